@@ -9,14 +9,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
-from navbound.read.runways import Runway, near
+from navbound.read.runways import Runway, cells, near_cells
 from navbound.records.run import CrossTrack
+from navbound.storage.tables import has_values, pieces
 from navbound.units import METRES_PER_FT, METRES_PER_NM
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
+
+    from navbound.storage.tables import Table
 
 
 @dataclass(frozen=True)
@@ -100,30 +103,89 @@ def find(epochs: pl.DataFrame, runways: Sequence[Runway] | None = None, gates: G
     gates : Gates, optional
         When a point belongs to an approach.
     """
+    landings = seek(epochs, runways, gates)
+    return Approaches(landings.between(epochs), landings.cross_track, landings.runways, landings.tracks, landings.notes)
+
+
+@dataclass(frozen=True)
+class Landings:
+    """Landings of a table at once or in pieces, without its epochs.
+
+    Attributes
+    ----------
+    approaches : DataFrame
+        ``track``, ``approach``, ``runway_name``, ``start`` and ``end`` (GPS ns) of each.
+    cross_track, runways, tracks, notes
+        As of :class:`Approaches`.
+    """
+
+    approaches: pl.DataFrame
+    cross_track: list[CrossTrack]
+    runways: list[Runway]
+    tracks: dict[str, str]
+    notes: list[str]
+
+    def between(self, epochs: pl.DataFrame) -> pl.DataFrame:
+        """Every epoch of a piece that lies on an approach, in the order of approach and time."""
+        if self.approaches.is_empty():
+            return epochs.clear()
+        return _between(epochs, self.approaches, {r.name: r for r in self.runways})
+
+
+def seek(epochs: Table, runways: Sequence[Runway] | None = None, gates: Gates | None = None) -> Landings:
+    """Find the landings of a table that may be in pieces; parameters as of :func:`find`."""
     gates = gates or Gates()
     notes = _missing_rules(epochs, gates)
-    points = _Points.of(epochs)
+    ruled = _Ruled.of(epochs)
     if runways is None:
-        low = points.altitude_m < gates.altitude_max_m if np.isfinite(points.altitude_m).any() else np.ones(len(points.lat_rad), dtype=bool)
-        runways = near(points.lat_rad[low], points.lon_rad[low])
-    gated = [_gate(points, runway, index, gates) for index, runway in enumerate(runways)]
+        runways = near_cells([_low_cells(piece, gates, ruled) for piece in pieces(epochs, _POINTS)])
     names = [r.name for r in runways]
-    segments, left_out = _segments(pl.concat(gated), epochs, gates, names) if gated else (pl.DataFrame(), [])
+    gated = [_gated(piece, runways, gates, ruled) for piece in pieces(epochs, [*_POINTS, "track", "time_ns", "status"])]
+    segments, left_out = _segments(pl.concat(gated), gates, names) if runways and gated else (pl.DataFrame(), [])
     notes += left_out
     if segments.is_empty():
-        return Approaches(epochs.clear(), [], [], {}, notes)
+        return Landings(pl.DataFrame(), [], [], {}, notes)
     segments = segments.with_columns(pl.col("runway").replace_strict(dict(enumerate(names)), return_dtype=pl.String).alias("runway_name"))
     approaches = _named(segments)
-    judged = _between(epochs, approaches, {name: runways[i] for i, name in enumerate(names)})
-    statistics = _statistics(segments)
     used = [r for r in runways if r.name in set(approaches["runway_name"])]
-    tracks = dict(approaches.select("approach", "track").iter_rows())
-    return Approaches(judged, statistics, used, tracks, notes)
+    return Landings(approaches, _statistics(segments), used, dict(approaches.select("approach", "track").iter_rows()), notes)
+
+
+_POINTS = ("est_lat_rad", "est_lon_rad", "altitude_m", "est_h_m", "ground_track_rad", "vertical_rate_mps")
+
+
+@dataclass(frozen=True)
+class _Ruled:
+    """What the whole table holds anywhere: a rule for it then applies to every point, and a missing value fails it."""
+
+    altitude: bool
+    ground_track: bool
+    vertical_rate: bool
+
+    @staticmethod
+    def of(epochs: Table) -> _Ruled:
+        altitude = any(has_values(epochs, name) for name in ("altitude_m", "est_h_m"))
+        return _Ruled(altitude, has_values(epochs, "ground_track_rad"), has_values(epochs, "vertical_rate_mps"))
+
+
+def _low_cells(epochs: pl.DataFrame, gates: Gates, ruled: _Ruled) -> pl.DataFrame:
+    """Where the low parts of the tracks are."""
+    points = _Points.of(epochs)
+    low = points.altitude_m < gates.altitude_max_m if ruled.altitude else np.ones(len(points.lat_rad), dtype=bool)
+    return cells(points.lat_rad[low], points.lon_rad[low])
+
+
+def _gated(epochs: pl.DataFrame, runways: Sequence[Runway], gates: Gates, ruled: _Ruled) -> pl.DataFrame:
+    """Points inside the gates of any runway, with their track, time and status."""
+    points = _Points.of(epochs)
+    gated = [_gate(points, runway, index, gates, ruled) for index, runway in enumerate(runways)]
+    rows = epochs.select("track", "time_ns", "status").with_row_index("row")
+    return pl.concat(gated).join(rows, on="row").drop("row") if gated else rows.clear()
 
 
 @dataclass(frozen=True)
 class _Points:
-    """Columns of the epoch table as arrays; NaN where a column is absent."""
+    """What the gates look at; NaN where the file does not say."""
 
     lat_rad: NDArray[np.float64]
     lon_rad: NDArray[np.float64]
@@ -148,7 +210,7 @@ class _Points:
         )
 
 
-def _missing_rules(epochs: pl.DataFrame, gates: Gates) -> list[str]:
+def _missing_rules(epochs: Table, gates: Gates) -> list[str]:
     rules = {"ground_track_rad": "the direction of travel", "altitude_m": "the altitude"}
     if gates.descending:
         rules["vertical_rate_mps"] = "the descent"
@@ -158,7 +220,7 @@ def _missing_rules(epochs: pl.DataFrame, gates: Gates) -> list[str]:
     return [f"Approaches were found without a rule for {words}: the file does not hold it." for words in absent]
 
 
-def _gate(points: _Points, runway: Runway, index: int, gates: Gates) -> pl.DataFrame:
+def _gate(points: _Points, runway: Runway, index: int, gates: Gates, ruled: _Ruled) -> pl.DataFrame:
     """Points inside the gates of one runway: row of the epoch table, distance before the threshold, cross-track distance."""
     selected = _roughly(points, runway, gates)
     feet = runway.centreline.project(points.lat_rad[selected], points.lon_rad[selected])
@@ -166,10 +228,12 @@ def _gate(points: _Points, runway: Runway, index: int, gates: Gates) -> pl.DataF
     turn = np.abs((points.ground_track_rad[selected] - feet.course_rad + np.pi) % (2 * np.pi) - np.pi)
     ceiling = max(gates.altitude_max_m, runway.elevation_m + gates.above_runway_m)
     inside = (before > gates.before_min_m) & (before < gates.before_max_m) & (np.abs(feet.cross_m) < gates.cross_max_m)
-    inside &= _holds(turn < gates.track_max_rad, points.ground_track_rad)
-    inside &= _holds(points.altitude_m[selected] < ceiling, points.altitude_m)
-    if gates.descending:
-        inside &= _holds(points.vertical_rate_mps[selected] < 0, points.vertical_rate_mps)
+    if ruled.ground_track:
+        inside &= turn < gates.track_max_rad
+    if ruled.altitude:
+        inside &= points.altitude_m[selected] < ceiling
+    if gates.descending and ruled.vertical_rate:
+        inside &= points.vertical_rate_mps[selected] < 0
     return pl.DataFrame(
         {
             "row": pl.Series(selected[inside], dtype=pl.UInt32),
@@ -178,11 +242,6 @@ def _gate(points: _Points, runway: Runway, index: int, gates: Gates) -> pl.DataF
             "cross_m": feet.cross_m[inside],
         }
     )
-
-
-def _holds(rule: NDArray[np.bool_], column: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Apply the rule, unless the file holds nothing to apply it to; a single missing value fails it."""
-    return rule if np.isfinite(column).any() else np.ones_like(rule)
 
 
 def _roughly(points: _Points, runway: Runway, gates: Gates) -> NDArray[np.int64]:
@@ -197,10 +256,9 @@ def _roughly(points: _Points, runway: Runway, gates: Gates) -> NDArray[np.int64]
     return np.flatnonzero(close)
 
 
-def _segments(gated: pl.DataFrame, epochs: pl.DataFrame, gates: Gates, names: list[str]) -> tuple[pl.DataFrame, list[str]]:
+def _segments(gated: pl.DataFrame, gates: Gates, names: list[str]) -> tuple[pl.DataFrame, list[str]]:
     """Gated points of accepted approaches, with ``segment``; of two runways at one time the one flown closer to. And who is left out."""
-    rows = epochs.select("track", "time_ns", "status").with_row_index("row")
-    points = gated.join(rows, on="row").sort("runway", "track", "time_ns")
+    points = gated.sort("runway", "track", "time_ns")
     new = (
         (pl.col("time_ns").diff() > int(gates.gap_max_s * 1e9))
         | (pl.col("track") != pl.col("track").shift())
@@ -287,6 +345,8 @@ def _between(epochs: pl.DataFrame, approaches: pl.DataFrame, runways: dict[str, 
                 track=pl.col("approach"),
             )
         )
+    if not parts:
+        return epochs.clear()
     return pl.concat(parts).drop("approach", "runway_name", "start", "end").sort("track", "time_ns")
 
 
@@ -305,17 +365,25 @@ def statistics(name: str, points: pl.DataFrame) -> CrossTrack:
     Mean; standard deviation of the population; 95 % point of the absolute value by nearest rank; standard deviation of the means of the
     tracks (n - 1), which says how much tracks differ from each other.
     """
-    cross = points["cross_m"].to_numpy()
     # In the order of the points: a sum in the order of the threads would differ in its last bit from run to run.
     means = points.group_by("segment", maintain_order=True).agg(pl.col("cross_m").mean())["cross_m"]
-    between = means.std(ddof=1) if len(means) > 1 else None
-    rank = math.ceil(0.95 * len(cross))
+    return cross_track_of(name, points["cross_m"].to_numpy(), means)
+
+
+def cross_track_of(name: str, cross_m: NDArray[np.float64], means_m: pl.Series) -> CrossTrack:
+    """The same of the distances and their means by track. [m]."""
+    between = means_m.std(ddof=1) if len(means_m) > 1 else None
+    rank = math.ceil(0.95 * len(cross_m))
+    mean_m, std_m = float(cross_m.mean()), float(cross_m.std())
+    # In place: a column of a large table is there twice at most.
+    sizes = np.abs(cross_m)
+    sizes.sort()
     return CrossTrack(
         path=name,
-        n_tracks=len(means),
-        n_points=len(cross),
-        mean_m=float(cross.mean()),
-        std_m=float(cross.std()),
-        abs95_m=float(np.sort(np.abs(cross))[rank - 1]),
+        n_tracks=len(means_m),
+        n_points=len(cross_m),
+        mean_m=mean_m,
+        std_m=std_m,
+        abs95_m=float(sizes[rank - 1]),
         between_tracks_std_m=float(between) if isinstance(between, float) else None,
     )

@@ -7,6 +7,7 @@ import functools
 import importlib.resources
 import io
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import polars as pl
@@ -14,6 +15,9 @@ import polars as pl
 from navbound import path
 from navbound.errors import InputError, NotFoundError
 from navbound.units import METRES_PER_FT
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 
 @dataclass(frozen=True)
@@ -131,18 +135,27 @@ _CELL_M = 15_000.0
 
 def near(lat_rad: np.ndarray[tuple[int], np.dtype[np.float64]], lon_rad: np.ndarray[tuple[int], np.dtype[np.float64]]) -> list[Runway]:
     """Runways with their end within about 15 km of one of many positions (some further ones come along)."""
+    return near_cells([cells(lat_rad, lon_rad)])
+
+
+def near_cells(parts: Sequence[pl.DataFrame]) -> list[Runway]:
+    """The same of positions in pieces, each as its :func:`cells`."""
     ends = table()
-    cells = _cells(lat_rad, lon_rad).unique()
+    around = pl.concat(parts).unique()
     steps = pl.DataFrame({"step": [-1, 0, 1]})
     for axis in "xyz":
-        cells = cells.join(steps, how="cross").with_columns(pl.col(axis) + pl.col("step")).drop("step").unique()
+        around = around.join(steps, how="cross").with_columns(pl.col(axis) + pl.col("step")).drop("step").unique()
     here = ends.hstack(_cells(ends["lat_rad"].to_numpy(), ends["lon_rad"].to_numpy()))
-    near_here = here.join(cells, on=["x", "y", "z"], how="semi").sort("airport", "end")
+    near_here = here.join(around, on=["x", "y", "z"], how="semi").sort("airport", "end")
     return [_runway(row) for row in near_here.drop("x", "y", "z").iter_rows(named=True)]
 
 
+def cells(lat_rad: np.ndarray[tuple[int], np.dtype[np.float64]], lon_rad: np.ndarray[tuple[int], np.dtype[np.float64]]) -> pl.DataFrame:
+    """Cubes that positions fall into, each once: neither poles nor the date line trouble them, and a sphere is near enough for a search."""
+    return _cells(lat_rad, lon_rad).unique()
+
+
 def _cells(lat_rad: np.ndarray[tuple[int], np.dtype[np.float64]], lon_rad: np.ndarray[tuple[int], np.dtype[np.float64]]) -> pl.DataFrame:
-    """Cubes that positions fall into: neither poles nor the date line trouble them, and a sphere is near enough for a search."""
     r = 6.371e6 / _CELL_M
     x, y, z = r * np.cos(lat_rad) * np.cos(lon_rad), r * np.cos(lat_rad) * np.sin(lon_rad), r * np.sin(lat_rad)
     return pl.DataFrame({k: np.floor(v).astype(np.int64) for k, v in (("x", x), ("y", y), ("z", z))})

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import polars as pl
@@ -19,7 +19,7 @@ from navbound.records.truth import TruthDoubts
 from navbound.time import utc_text
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -60,6 +60,11 @@ class Truth:
             return self.columns
         return {name: column for name, column in self.columns.items() if name not in _OF_TRUTH}
 
+    @property
+    def columns_of_truth(self) -> dict[str, str]:
+        """What is declared of the columns in the file of a recorded truth."""
+        return {_OF_TRUTH[name]: column for name, column in self.columns.items() if name in _OF_TRUTH}
+
 
 def truth_of(source: str | Path | None, tolerance_s: float, columns: Mapping[str, str] | None = None) -> Truth:
     """Read ``X,Y,Z`` (Earth-fixed, metres), or take a file's name.
@@ -92,24 +97,37 @@ def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str, R
     InputError
         Epochs without positions; a recording as in :func:`join`.
     """
-    if not {"est_lat_rad", "est_lon_rad"} <= set(epochs.columns):
-        raise ConflictError("truth", because="the table holds no positions to compare with it")
+    require_positions(epochs.columns)
     if truth.ecef_m is None:
         other = _recorded(truth)
         joined, words, doubts = join(epochs, other, truth.tolerance_s)
         return joined, words, other, doubts
+    compared, doubts = at_fixed_point(epochs, truth)
+    return compared, fixed_words(truth, doubts), None, doubts
+
+
+def require_positions(columns: Sequence[str]) -> None:
+    """Refuse a table without positions, with an :class:`InputError`."""
+    if not {"est_lat_rad", "est_lon_rad"} <= set(columns):
+        raise ConflictError("truth", because="the table holds no positions to compare with it")
+
+
+def at_fixed_point(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, TruthDoubts]:
+    """Form the navigation error of a receiver that does not move; of whole tracks."""
     from navbound import gnss  # noqa: PLC0415  (only with a fixed point)
 
     place = gnss.geodetic(truth.ecef_m)
     names = ("truth_lat_rad", "truth_lon_rad", "truth_h_m")
-    fixed = epochs.with_columns(pl.lit(float(value)).alias(name) for name, value in zip(names, place, strict=True))
-    compared, doubts = with_error(fixed)
-    return compared, _sentences(f"Truth: the fixed point {truth.stated} m, Earth-fixed.", doubts.words), None, doubts
+    return with_error(epochs.with_columns(pl.lit(float(value)).alias(name) for name, value in zip(names, place, strict=True)))
+
+
+def fixed_words(truth: Truth, doubts: TruthDoubts) -> str:
+    """What is said of a fixed point."""
+    return _sentences(f"Truth: the fixed point {truth.stated} m, Earth-fixed.", doubts.words)
 
 
 def _recorded(truth: Truth) -> Reading:
-    declared = {_OF_TRUTH[name]: column for name, column in truth.columns.items() if name in _OF_TRUTH}
-    return read_beside(str(truth.stated), declared, truth.columns_of_estimates)
+    return read_beside(str(truth.stated), truth.columns_of_truth, truth.columns_of_estimates)
 
 
 def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S) -> tuple[pl.DataFrame, str, TruthDoubts]:
@@ -138,48 +156,137 @@ def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S)
     InputError
         A tolerance below zero, or not one epoch with a truth (a wrong time scale shows itself so).
     """
-    if not (np.isfinite(tolerance_s) and tolerance_s >= 0):
-        raise InputError("truth_tolerance_s", tolerance_s, "s", "[0, inf)")
-    renamed = {"est_lat_rad": "truth_lat_rad", "est_lon_rad": "truth_lon_rad", "est_h_m": "truth_h_m"}
-    other = truth.epochs.rename({k: v for k, v in renamed.items() if k in truth.epochs.columns})
-    places = [v for v in renamed.values() if v in other.columns]
+    rows = AllRows()
+    rows.see(truth.epochs)
+    comparison = Comparison(rows, truth.source.path, tolerance_s)
+    joined = comparison.join(epochs)
+    words = comparison.words()
+    return joined, words, comparison.doubts
+
+
+_RENAMED = {"est_lat_rad": "truth_lat_rad", "est_lon_rad": "truth_lon_rad", "est_h_m": "truth_h_m"}
+
+
+class Rows(Protocol):
+    """A recorded truth, ready to be joined."""
+
+    names: set[str]
+    jumps: list[int]
+    span_ns: tuple[int, int]
+
+    def around(self, epochs: pl.DataFrame, tolerance_ns: int) -> pl.DataFrame:
+        """At least the rows that may be joined to some epochs."""
+
+
+def truth_rows(recorded: pl.DataFrame) -> tuple[pl.DataFrame, list[int]]:
+    """Whole tracks of a recording as a truth: which of its rows are none, and the times of its jumps (GPS ns)."""
+    other = recorded.rename({k: v for k, v in _RENAMED.items() if k in recorded.columns})
+    places = [v for v in _RENAMED.values() if v in other.columns]
     other = other.select("track", "time_ns", *places, truth_time_ns="time_ns", invalid=_invalid(other), truth_sigma_m=_truth_sigma_m(other))
-    other, jumps = contradicting(other.sort("track", "time_ns"))
-    several = other["track"].n_unique() > 1
-    joined = (
-        epochs.drop([v for v in renamed.values() if v in epochs.columns])
-        .sort("time_ns")
-        .join_asof(
-            other.sort("time_ns") if several else other.drop("track").sort("time_ns"),
-            on="time_ns",
-            by="track" if several else None,
-            strategy="nearest",
-            tolerance=round(tolerance_s * 1e9),
-            check_sortedness=False,
+    return contradicting(other.sort("track", "time_ns"))
+
+
+def _both(one: tuple[int, int] | None, times: pl.Series) -> tuple[int, int]:
+    first, last = int(times.min()), int(times.max())  # type: ignore[arg-type]
+    return (first, last) if one is None else (min(one[0], first), max(one[1], last))
+
+
+class AllRows:
+    """A truth that is held in memory."""
+
+    def __init__(self) -> None:
+        self.names, self.jumps = set[str](), list[int]()
+        self.span_ns = (0, 0)
+        self._table = pl.DataFrame()
+
+    def see(self, recorded: pl.DataFrame) -> None:
+        """All of it."""
+        self._table, self.jumps = truth_rows(recorded)
+        self.names = set(self._table["track"].unique())
+        self.span_ns = _both(None, self._table["time_ns"])
+
+    def around(self, _epochs: pl.DataFrame, _tolerance_ns: int) -> pl.DataFrame:
+        """All rows."""
+        return self._table
+
+
+class Comparison:
+    """Joins the nearest truth to epochs that come at once or in pieces of whole tracks, and counts.
+
+    Attributes
+    ----------
+    doubts : TruthDoubts
+        What speaks against the truth, of the epochs so far.
+
+    Raises
+    ------
+    InputError
+        A tolerance below zero.
+    """
+
+    def __init__(self, rows: Rows, path: str, tolerance_s: float) -> None:
+        if not (np.isfinite(tolerance_s) and tolerance_s >= 0):
+            raise InputError("truth_tolerance_s", tolerance_s, "s", "[0, inf)")
+        self._rows, self._path, self._tolerance_s = rows, path, tolerance_s
+        self._n = self._n_known = self._largest_ns = 0
+        self._span_ns: tuple[int, int] | None = None
+        self.doubts = TruthDoubts()
+
+    def join(self, epochs: pl.DataFrame) -> pl.DataFrame:
+        """Epochs with the nearest truth in time, and the navigation error."""
+        several, tolerance_ns = len(self._rows.names) > 1, round(self._tolerance_s * 1e9)
+        other = self._rows.around(epochs, tolerance_ns)
+        joined = (
+            epochs.drop([v for v in _RENAMED.values() if v in epochs.columns])
+            .sort("time_ns")
+            .join_asof(
+                other.sort("time_ns") if several else other.drop("track").sort("time_ns"),
+                on="time_ns",
+                by="track" if several else None,
+                strategy="nearest",
+                tolerance=tolerance_ns,
+                check_sortedness=False,
+            )
+            .sort("track", "time_ns")
         )
-        .sort("track", "time_ns")
-    )
-    apart = (joined["truth_time_ns"] - joined["time_ns"]).abs()
-    known = len(apart) - apart.null_count()
-    if known == 0:
-        of = Path(truth.source.path).name
-        because = f"no epoch of {of} is within {tolerance_s:g} s of one: it spans {_span(other)}, the estimates span {_span(epochs)} (UTC)"
-        raise ConflictError("truth", because=because)
-    largest = apart.max()
-    words = (
-        f"Truth: {truth.source.path}, joined to the nearest epoch in time; {known} of {joined.height} epochs have one, at most "
-        f"{float(largest) * 1e-6 if isinstance(largest, int) else 0.0:g} ms apart (allowed {tolerance_s * 1e3:g} ms)."
-    )
-    # Each epoch is lost for one reason.
-    joined = joined.with_columns(contradicted=pl.col("contradicted") & ~pl.col("invalid"))
-    imprecise = (pl.col("truth_sigma_m") >= _sigma_m(joined)) & ~pl.col("invalid") & ~pl.col("contradicted")
-    joined = joined.with_columns(imprecise=imprecise.fill_null(value=False))
-    kept = ~pl.any_horizontal("contradicted", "invalid", "imprecise")
-    n_contradicted, n_invalid, n_imprecise = (int(joined[name].sum()) for name in ("contradicted", "invalid", "imprecise"))
-    joined = joined.with_columns(pl.when(kept).then(pl.col(name)).alias(name) for name in renamed.values() if name in joined.columns)
-    epochs, doubts = with_error(joined.drop("truth_time_ns", "contradicted", "invalid", "imprecise", "truth_sigma_m"))
-    doubts += TruthDoubts(n_contradicted, tuple(jumps) if n_contradicted else (), n_invalid=n_invalid, n_imprecise=n_imprecise)
-    return epochs, _sentences(words, doubts.words), doubts
+        self._count(joined)
+        # Each epoch is lost for one reason.
+        joined = joined.with_columns(contradicted=pl.col("contradicted") & ~pl.col("invalid"))
+        imprecise = (pl.col("truth_sigma_m") >= _sigma_m(joined)) & ~pl.col("invalid") & ~pl.col("contradicted")
+        joined = joined.with_columns(imprecise=imprecise.fill_null(value=False))
+        kept = ~pl.any_horizontal("contradicted", "invalid", "imprecise")
+        n_contradicted, n_invalid, n_imprecise = (int(joined[name].sum()) for name in ("contradicted", "invalid", "imprecise"))
+        joined = joined.with_columns(pl.when(kept).then(pl.col(name)).alias(name) for name in _RENAMED.values() if name in joined.columns)
+        compared, doubts = with_error(joined.drop("truth_time_ns", "contradicted", "invalid", "imprecise", "truth_sigma_m"))
+        jumps = tuple(self._rows.jumps) if n_contradicted else ()
+        self.doubts += doubts + TruthDoubts(n_contradicted, jumps, n_invalid=n_invalid, n_imprecise=n_imprecise)
+        return compared
+
+    def _count(self, joined: pl.DataFrame) -> None:
+        apart = (joined["truth_time_ns"] - joined["time_ns"]).abs()
+        largest = apart.max()
+        self._n += len(apart)
+        self._n_known += len(apart) - apart.null_count()
+        self._largest_ns = max(self._largest_ns, largest if isinstance(largest, int) else 0)
+        self._span_ns = _both(self._span_ns, joined["time_ns"])
+
+    def words(self) -> str:
+        """How many epochs have a truth, the largest difference in time, and what speaks against it.
+
+        Raises
+        ------
+        InputError
+            Not one epoch with a truth (a wrong time scale shows itself so).
+        """
+        if self._n_known == 0:
+            spans = f"it spans {_span(self._rows.span_ns)}, the estimates span {_span(self._span_ns or (0, 0))} (UTC)"
+            because = f"no epoch of {Path(self._path).name} is within {self._tolerance_s:g} s of one: {spans}"
+            raise ConflictError("truth", because=because)
+        words = (
+            f"Truth: {self._path}, joined to the nearest epoch in time; {self._n_known} of {self._n} epochs have one, at most "
+            f"{self._largest_ns * 1e-6:g} ms apart (allowed {self._tolerance_s * 1e3:g} ms)."
+        )
+        return _sentences(words, self.doubts.words)
 
 
 def _invalid(truth: pl.DataFrame) -> pl.Expr:
@@ -230,6 +337,5 @@ def _sentences(*words: str) -> str:
     return " ".join(each for each in words if each)
 
 
-def _span(frame: pl.DataFrame) -> str:
-    times = frame["time_ns"].sort().to_list()
-    return f"{utc_text(times[0])} to {utc_text(times[-1])}"
+def _span(times_ns: tuple[int, int]) -> str:
+    return f"{utc_text(times_ns[0])} to {utc_text(times_ns[1])}"

@@ -3,43 +3,47 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING, cast, get_args
 
 import polars as pl
 
 from navbound.errors import ConflictError, InputError
 from navbound.methods import EXTRACTION_LABEL, EXTRACTION_MARK
-from navbound.read.approaches import Approaches, Gates, find, statistics
+from navbound.read.approaches import Gates
 from navbound.read.checks.axes import doubts_of_axes
 from navbound.read.checks.plausible import Limits, check
 from navbound.read.checks.repeats import left_out, separate
 from navbound.read.covariance import Claimed, claim, words_beside
 from navbound.read.pieces import PIECE_ROWS
-from navbound.read.routes import Route, follow, load_route
-from navbound.read.runways import runway
 from navbound.read.speeds import doubts_of_speeds
 from navbound.read.tables.epochs import Reading, read
 from navbound.read.truth import TOLERANCE_S, truth_of, with_error, with_truth
-from navbound.records.material import LEFT_OUT, Material, Operation
-from navbound.records.run import CovarianceOrigin, Rejection, Waypoint
+from navbound.records.material import Material, Operation
+from navbound.records.run import CovarianceOrigin, Rejection
 from navbound.records.truth import TruthDoubts
 from navbound.run.inputs.files import sort_out
 from navbound.run.inputs.solving import Solving
-from navbound.run.pieces import AUXILIARY, Flights, covariance_status, in_pieces, is_large, without_path
+from navbound.run.paths import follow_path, path_of, way_of
+from navbound.run.pieces import (
+    AUXILIARY,
+    Flights,
+    PiecedTruth,
+    Request,
+    covariance_status,
+    in_pieces,
+    is_large,
+)
 from navbound.table.columns import HEARD
 from navbound.table.declare import schema
-from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from navbound.read.pieces import PiecedReading
-    from navbound.records.procedure import ProcedureFlown
-    from navbound.records.run import CrossTrack, InputFile
+    from navbound.read.truth import Truth
     from navbound.run.inputs.files import Files
-    from navbound.run.pieces import InPieces
     from navbound.run.procedure import Flown, OnProcedure
 
 
@@ -101,7 +105,7 @@ def material(
         What was flown. Without it a recording on the path to a runway or on an approach procedure is an approach, any other is en route.
     piece_rows : int, optional
         Read the one text table or Parquet file in pieces of about so many rows, whatever its size. Without it a table of 64 MiB or more,
-        or of half a million rows of Parquet, is read so where it has neither path nor truth. Results are the same.
+        or of half a million rows of Parquet, is read so, but for a procedure; and so is its recorded truth. Results are the same.
 
     Raises
     ------
@@ -127,21 +131,18 @@ def material(
         "truth_tolerance_s": truth_tolerance_s,
         "sigma_m": sigma_m,
     }
-    context = _Context(requirement, settings, _stated(operation) or "en-route", sigma_m, gates, limits, solve, solving)
-    alone = len(names) == 1 and path is None and procedure is None and truth is None and not solve
+    context = _Context(requirement, settings, _stated(operation), sigma_m, gates, limits, solve, solving)
+    alone = len(names) == 1 and procedure is None and not solve
     if piece_rows is not None and not alone:
-        raise ConflictError(
-            "piece_rows", excludes=("path", "procedure", "truth", "solve"), because="only one table alone is read in pieces"
-        )
-    if alone and is_large(Path(names[0]), columns, piece_rows):
+        raise ConflictError("piece_rows", excludes=("procedure", "solve"), because="only one table alone is read in pieces")
+    named = truth_of(truth, truth_tolerance_s, columns)
+    if alone and is_large(Path(names[0]), piece_rows):
         solving.refuse(_TO_SOLVE)
-        piece_rows = piece_rows or PIECE_ROWS
-        return _in_pieces(in_pieces(Path(names[0]), columns, sigma_m=sigma_m, limits=limits, rnp_m=rnp_m, piece_rows=piece_rows), context)
+        return _in_pieces(Path(names[0]), path, named, context, piece_rows)
     sorted_inputs = sort_out(names, solve=solve)
     sorted_inputs.require_navigation()
     if not sorted_inputs.observations:
         solving.refuse(_TO_SOLVE)
-    named = truth_of(truth, truth_tolerance_s, columns)
     readings = [read(source.path, columns=named.columns_of_estimates) for source in sorted_inputs.tables] + (
         _solved(sorted_inputs, solving) if sorted_inputs.observations else []
     )
@@ -171,10 +172,10 @@ def material(
     elif {"truth_lat_rad", "truth_lon_rad"} <= set(epochs.columns):
         epochs, truth_doubts = with_error(epochs)
         assumptions.append(f"Truth: from the file itself. {truth_doubts.words}".rstrip())
-    route = _follow(path, epochs, gates, rejected) if procedure is None else _on_procedure(epochs, procedure)
+    route = follow_path(path, epochs, gates, rejected) if procedure is None else _on_procedure(epochs, procedure)
     # A path has ends of its own.
     flights = Flights(dividing=path is None and procedure is None)
-    epochs = flights.divide(covariance_status(route.epochs))
+    epochs = flights.divide(covariance_status(cast("pl.DataFrame", route.epochs)))
     if procedure is None:
         epochs = epochs.with_columns(pl.lit(float(rnp_m)).alias("rnp_m"))
     else:
@@ -188,13 +189,11 @@ def material(
         assumptions=[*assumptions, *flights.words(), *route.words, *notes],
         covariance=origin,
         operation=operation or route.operation,
-        labels={track: f"{labels[of]} {track.partition(' ')[2]}".strip() for track, of in route.tracks.items()}
-        if route.tracks
-        else labels | _labels(epochs),
+        labels=_labels_of(route.tracks, labels, _labels(epochs)),
         waypoints=route.waypoints,
         inputs=inputs + route.inputs,
         rejected=rejected,
-        left_out=pl.concat([_on_path(flights.divide_left_out(lost), epochs, route.tracks), route.left_out]),
+        left_out=pl.concat([_on_path(flights.divide_left_out(lost), _ends(epochs), route.tracks), route.left_out]),
         cross_track=route.cross_track,
         procedures=route.flights,
         settings=context.settings_with(readings),
@@ -203,6 +202,13 @@ def material(
         truth_doubts=truth_doubts,
         satellites=pl.concat([r.satellites for r in readings if r.satellites is not None] or [pl.DataFrame(schema=schema(HEARD))]),
     )
+
+
+def _labels_of(tracks: Mapping[str, str], before: dict[str, str], judged: dict[str, str]) -> dict[str, str]:
+    """Labels of the tracks that are judged: of an approach that of its track with the runway."""
+    if tracks:
+        return {track: f"{before[of]} {track.partition(' ')[2]}".strip() for track, of in tracks.items()}
+    return before | judged
 
 
 def _unread(readings: Sequence[Reading]) -> list[str]:
@@ -220,7 +226,7 @@ class _Context:
 
     requirement: str
     settings: dict[str, object]
-    operation: Operation
+    stated: Operation | None
     sigma_m: float | None
     gates: Gates
     limits: Limits
@@ -247,34 +253,46 @@ def _stated(operation: Operation | None) -> Operation | None:
 _TO_SOLVE = "there are no measurements to solve (RINEX observations, or a receiver's log with solve)"
 
 
-def _in_pieces(recorded: InPieces, context: _Context) -> Material:
-    """The same of a table that is in pieces on the disk: without a path and a truth."""
-    reading = recorded.reading
+def _in_pieces(file: Path, path: str | Path | None, truth: Truth, context: _Context, piece_rows: int | None) -> Material:
+    """The same of a table that is in pieces on the disk."""
+    n, rnp_m = piece_rows or PIECE_ROWS, context.settings["rnp_m"]
+    way, compared = way_of(path, context.gates, n), PiecedTruth(truth, is_large=lambda of: is_large(of, piece_rows), piece_rows=n)
+    request = Request(truth.columns_of_estimates, context.sigma_m, context.limits, cast("float", rnp_m), n, truth=compared, way=way)
+    recorded = in_pieces(file, request)
+    reading, other = recorded.reading, compared.recording
     _refuse_experimental([reading])
+    rejected = [*reading.rejected, *([] if other is None else other.rejected)]
+    of_truth = compared.words()
+    route = path_of(way, recorded.epochs, context.gates, rejected)
     return Material(
         epochs=pl.DataFrame(schema=recorded.epochs.schema),
         frames=recorded.epochs,
         kind="analyze",
-        title=f"Recorded tracks: {Path(reading.source.path).name}",
+        title=route.heading if path is not None else f"{route.heading}: {file.name}",
         requirement=context.requirement,
         sample_period_s=recorded.period_s,
         assumptions=[
             words_beside(recorded.claimed, reading.unread),
             recorded.plausibility.words,
             *recorded.doubts,
-            _NO_PATH,
+            *of_truth,
+            *recorded.flights,
+            *route.words,
             *reading.notes,
         ],
         covariance=_origin(recorded.claimed, context.sigma_m, solved_alone=False),
-        operation=context.operation,
-        labels=recorded.labels,
-        inputs=[reading.source],
-        rejected=reading.rejected,
-        left_out=recorded.left_out,
+        operation=context.stated or route.operation,
+        labels=_labels_of(route.tracks, recorded.labels_before, recorded.labels),
+        waypoints=route.waypoints,
+        inputs=[reading.source, *([] if other is None else [other.source]), *route.inputs],
+        rejected=rejected,
+        left_out=_on_path(recorded.left_out, recorded.ends, route.tracks),
+        cross_track=route.cross_track,
         settings=context.settings_with([reading]),
         with_levels=recorded.with_levels,
         unread=reading.unread,
-        position_doubts=[*reading.position_doubts, *recorded.position_doubts],
+        position_doubts=[*reading.position_doubts, *recorded.position_doubts, *([] if other is None else other.position_doubts)],
+        truth_doubts=compared.doubts,
     )
 
 
@@ -294,22 +312,6 @@ def _refuse_experimental(readings: Sequence[Reading | PiecedReading]) -> None:
                 )
 
 
-@dataclass(frozen=True)
-class _Path:
-    """Epochs with the path they should have followed, and what the report says about it."""
-
-    epochs: pl.DataFrame
-    words: list[str]
-    heading: str
-    waypoints: list[Waypoint] = field(default_factory=list)
-    inputs: list[InputFile] = field(default_factory=list)
-    cross_track: list[CrossTrack] = field(default_factory=list)
-    tracks: dict[str, str] = field(default_factory=dict)
-    left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
-    operation: Operation = "en-route"
-    flights: list[ProcedureFlown] = field(default_factory=list)
-
-
 def _solved(files: Files, solving: Solving) -> list[Reading]:
     from navbound.run.inputs.solved import solved  # noqa: PLC0415  (receivers are loaded where there are measurements)
 
@@ -320,65 +322,6 @@ def _on_procedure(epochs: pl.DataFrame, procedure: Flown) -> OnProcedure:
     from navbound.run.procedure import on_procedure  # noqa: PLC0415  (databases of procedures are loaded where one is named)
 
     return on_procedure(epochs, procedure)
-
-
-def _follow(path: str | Path | None, epochs: pl.DataFrame, gates: Gates, rejected: list[Rejection]) -> _Path:
-    if path is None:
-        return _Path(without_path(epochs), [_NO_PATH], "Recorded tracks")
-    if Path(path).suffix.lower() in {".toml", ".csv"}:
-        return _on_route(load_route(path), epochs, rejected)
-    names = None if str(path) == "auto" else [name.strip() for name in str(path).split(",")]
-    approaches = find(epochs, None if names is None else [runway(name) for name in names], gates)
-    if approaches.epochs.is_empty():
-        where = "any runway of the table" if names is None else ", ".join(names)
-        passes = " ".join(["", *approaches.notes])
-        raise InputError("path", str(path), domain=f"paths that a track follows: no approach to {where} ({_gates_words(gates)}).{passes}")
-    return _on_approach(approaches, gates, epochs.height)
-
-
-def _gates_words(gates: Gates) -> str:
-    """What counts as an approach, in the units of charts."""
-    descending = ", descending" if gates.descending else ""
-    return (
-        f"an approach is at least {gates.span_min_m / METRES_PER_NM:.3g} NM and {gates.n_min} points between "
-        f"{gates.before_min_m / METRES_PER_NM:.3g} and "
-        f"{gates.before_max_m / METRES_PER_NM:.3g} NM before a threshold, within {gates.cross_max_m:.0f} m of the extended centreline, "
-        f"and comes within {gates.lands_within_m / METRES_PER_NM:.3g} NM of the threshold{descending}"
-    )
-
-
-_NO_PATH = "Path: none given, so there is no flight technical error; only the navigation system is judged."
-
-
-def _on_route(route: Route, epochs: pl.DataFrame, rejected: list[Rejection]) -> _Path:
-    followed, n_beyond = follow(epochs, route)
-    if followed.is_empty():
-        raise InputError(
-            "path", route.source.path, domain="routes that a track follows: every epoch lies before its start or beyond its end"
-        )
-    if n_beyond:
-        reason = "before the start or beyond the end of the route"
-        rejected.append(Rejection(file=route.source.path, reason=reason, count=n_beyond, first_line=None, example=f"{n_beyond} epochs"))
-    points = followed.select(cross_m="fte_m", segment="track")
-    words = f"Path: route {route.source.path}, {len(route.waypoints)} waypoints, {route.path.length_m / METRES_PER_NM:.2f} NM."
-    return _Path(followed, [words], f"Route {route.name}", route.waypoints, [route.source], [statistics(route.name, points)])
-
-
-def _on_approach(approaches: Approaches, gates: Gates, n_recorded: int) -> _Path:
-    n, runways = len(approaches.tracks), ", ".join(r.name for r in approaches.runways)
-    words = [
-        f"Path: the centreline through the runway ends of the shipped table (OurAirports), {gates.before_max_m / METRES_PER_NM:g} to "
-        f"{gates.before_min_m / METRES_PER_NM:g} NM before the landing threshold; {n} approaches.",
-        f"Judged are all epochs from the first to the last point of an approach, {approaches.epochs.height} of {n_recorded} recorded; "
-        "what came before the first point is not. The path is the extended centreline, not a coded procedure: its own error counts as "
-        "flight technical error.",
-    ]
-    waypoints = [Waypoint(name=r.name, lat_rad=r.lat_rad, lon_rad=r.lon_rad, kind="runway") for r in approaches.runways]
-    cross, tracks = approaches.cross_track, approaches.tracks
-    heading = f"{n} recorded approaches to {runways if len(approaches.runways) <= 4 else f'{len(approaches.runways)} runways'}"
-    words += [r.doubt for r in approaches.runways if r.doubt is not None]
-    notes = words + approaches.notes
-    return _Path(approaches.epochs, notes, heading, waypoints, cross_track=cross, tracks=tracks, operation="approach")
 
 
 def _together(readings: Sequence[Reading], rejected: list[Rejection]) -> tuple[pl.DataFrame, pl.DataFrame]:
@@ -396,11 +339,15 @@ def _together(readings: Sequence[Reading], rejected: list[Rejection]) -> tuple[p
     return separated.epochs, pl.concat([*(r.left_out for r in readings), left_out(separated.contradicting)])
 
 
-def _on_path(lost: pl.DataFrame, epochs: pl.DataFrame, tracks: Mapping[str, str]) -> pl.DataFrame:
+def _ends(epochs: pl.DataFrame) -> pl.DataFrame:
+    """First and last epoch of every track. [GPS ns]."""
+    return epochs.group_by("track").agg(start=pl.col("time_ns").min(), end=pl.col("time_ns").max())
+
+
+def _on_path(lost: pl.DataFrame, ends: pl.DataFrame, tracks: Mapping[str, str]) -> pl.DataFrame:
     """The rows that cannot be judged and belong to what is judged: all, or those between the ends of an approach of their track."""
     if not tracks or lost.is_empty():
         return lost
-    ends = epochs.group_by("track").agg(start=pl.col("time_ns").min(), end=pl.col("time_ns").max())
     ends = ends.with_columns(pl.col("track").replace_strict(dict(tracks), default=None, return_dtype=pl.String).alias("of"))
     timed = lost.join(ends.rename({"track": "approach"}), left_on="track", right_on="of", how="inner")
     # Without a time nobody knows where a row belongs, and it may belong here.

@@ -72,7 +72,7 @@ def established(epochs: pl.DataFrame) -> tuple[pl.DataFrame, TruthDoubts]:
         if (lost & ~stands).any():
             jumping.append(group["__row"].filter(lost & ~stands))
             jumps += at
-    doubts = TruthDoubts(sum(map(len, jumping)), tuple(sorted(jumps)), sum(map(len, standing)), longest_m)
+    doubts = TruthDoubts(sum(map(len, jumping)), tuple(sorted(set(jumps))), sum(map(len, standing)), longest_m)
     if not doubts.n:
         return epochs, doubts
     without = pl.int_range(pl.len()).is_in(pl.concat([*jumping, *standing]).implode())

@@ -15,7 +15,7 @@ from navbound.read.pieces.chunks import CHUNK_BYTES, Chunks
 from navbound.read.pieces.order import Pieces
 from navbound.read.pieces.parquet import batches, is_parquet
 from navbound.read.source import Source, digested
-from navbound.read.tables.columns import POSITION, assign
+from navbound.read.tables.columns import POSITION, assign, truth_as_position
 from navbound.read.tables.stated_units import HEAD_BYTES, require_same_in_remarks
 from navbound.read.tables.table import LINE, Layout, layout_of, rows_of
 from navbound.read.tables.values import Late, Values, one_row_a_time, texts
@@ -100,7 +100,16 @@ class PiecedReading:
                     del spans[part["track"][0]]
 
 
-def read_pieces(path: str | Path, *, columns: Mapping[str, str] | None = None, piece_rows: int = PIECE_ROWS) -> PiecedReading:
+@dataclass(frozen=True)
+class Beside:
+    """That a recording lies beside another: what is declared of the other's columns counts for those that it has too."""
+
+    columns: Mapping[str, str]
+
+
+def read_pieces(
+    path: str | Path, *, columns: Mapping[str, str] | None = None, piece_rows: int = PIECE_ROWS, beside: Beside | None = None
+) -> PiecedReading:
     """Read a recorded track from a text table or a Parquet file of any size.
 
     Parameters
@@ -111,6 +120,8 @@ def read_pieces(path: str | Path, *, columns: Mapping[str, str] | None = None, p
         As :func:`navbound.read.read`.
     piece_rows : int
         About how many rows are worked on at a time.
+    beside : Beside, optional
+        As :func:`navbound.read.tables.epochs.read_beside`.
 
     Raises
     ------
@@ -119,6 +130,7 @@ def read_pieces(path: str | Path, *, columns: Mapping[str, str] | None = None, p
     """
     path, stride = Path(path), max(1, piece_rows // _SAMPLES)
     first: _FirstPass = _OfParquet(path, columns, stride) if is_parquet(path) else _OfText(path, columns, stride)
+    first.beside = beside
     first.read()
     return _second_pass(first, max(1, piece_rows // first.stride))
 
@@ -134,6 +146,7 @@ class _FirstPass:
         self.sample, self.names = list[pl.DataFrame](), set[str | None]()
         self.rejections = Rejections(path, self.unit)
         self._columns = columns
+        self.beside: Beside | None = None
 
     @property
     def source(self) -> Source:
@@ -146,7 +159,11 @@ class _FirstPass:
 
     def named(self, names: list[str], frame: pl.DataFrame) -> None:
         """What the columns of the first rows are."""
-        self.mapping: Assignment = assign(names, self._columns, self.path, texts=texts(frame))
+        columns, where_present = self._columns, dict[str, str]()
+        if self.beside is not None:
+            # A file of the truth may call its positions so.
+            columns, where_present = truth_as_position(names) | dict(columns or {}), dict(self.beside.columns)
+        self.mapping: Assignment = assign(names, columns, self.path, texts=texts(frame), where_present=where_present)
         self.values = Values(self.path, self.source.stem, self.mapping, list(POSITION))
 
     def keep(self, frame: pl.DataFrame) -> None:

@@ -37,5 +37,5 @@ def require_free(source: Source, n_rows: int) -> None:
     if free is not None and needed > free:
         needed_mb, free_mb = (n / 1e6 for n in (needed, free))
         sizes = f"its {n_rows} rows take about {needed_mb:.0f} MB of memory, of which {free_mb:.0f} MB are free"
-        less = "a plain CSV that is judged alone, without a path and a truth, is read in pieces and takes less"
+        less = "a large plain CSV or Parquet file that is judged alone, without a procedure, is read in pieces and takes less"
         raise FormatError(source.path, f"{sizes}: cut it by track or by day; {less}")

@@ -14,18 +14,20 @@ from navbound.read.checks.axes import Axes
 from navbound.read.checks.plausible import Checker, Limits, Plausibility
 from navbound.read.covariance import Claimed, Claims
 from navbound.read.pieces import Frames, PiecedReading, read_pieces
-from navbound.read.pieces.chunks import Chunks
 from navbound.read.pieces.parquet import is_parquet, shape
 from navbound.read.source import LARGE_BYTES, is_text_table
 from navbound.read.speeds import Speeds
-from navbound.read.tables.columns import POSITION_TIME, assign
-from navbound.read.tables.table import layout_of
+from navbound.read.tables.columns import POSITION_TIME
 from navbound.run.pieces.flights import Flights
+from navbound.storage.tables import whole_tracks
 from navbound.table.columns import COVARIANCE, HORIZONTAL
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
+
+    from navbound.run.pieces.truth import PiecedTruth
+    from navbound.run.pieces.ways import Way
 
 AUXILIARY = (
     "callsign",
@@ -44,36 +46,15 @@ AUXILIARY = (
 """Columns that no later stage reads."""
 
 
-def states_truth(path: Path, columns: Mapping[str, str] | None) -> bool:
-    """Whether a table has columns of the true position, recognised by their names."""
-    names = list[str]()
-    if is_parquet(path):
-        names = shape(path)[1]
-    else:
-        for lines in Chunks(path):
-            if not lines.is_empty():
-                names = [name for name in layout_of(path, lines).names if name]
-                break
-    return bool(names) and {"truth_lat_rad", "truth_lon_rad"} <= set(assign(names, columns, path).columns)
-
-
 LARGE_ROWS = 1 << 19
 """Rows from which a Parquet file is read in pieces. [1] Provenance: ours; below it the whole takes less than about 0.6 GB."""
 
 
-def is_large(path: Path, columns: Mapping[str, str] | None, piece_rows: int | None) -> bool:
-    """Whether a file is a table that is read in pieces: a large one, or any where pieces are requested; a truth needs whole series."""
+def is_large(path: Path, piece_rows: int | None) -> bool:
+    """Whether a file is a table that is read in pieces: a large one, or any where pieces are requested."""
     if is_parquet(path):
-        large = piece_rows is not None or shape(path)[0] >= LARGE_ROWS
-    else:
-        large = is_text_table(path, LARGE_BYTES if piece_rows is None else 0)
-    return large and not states_truth(path, columns)
-
-
-def without_path(epochs: pl.DataFrame) -> pl.DataFrame:
-    """Epochs of which nobody says where they should have been."""
-    absent = (pl.lit(None, pl.Float64).alias(c) for c in ("course_rad", "fte_m"))
-    return epochs.with_columns(*absent, pl.lit("recorded track").alias("phase"))
+        return piece_rows is not None or shape(path)[0] >= LARGE_ROWS
+    return is_text_table(path, LARGE_BYTES if piece_rows is None else 0)
 
 
 def covariance_status(epochs: pl.DataFrame) -> pl.DataFrame:
@@ -103,16 +84,20 @@ class InPieces:
         Rows that cannot be judged, as those of the reading, by the flights of their tracks.
     claimed : Claimed
         Where the covariance comes from; its epochs are those of the last piece.
-    labels : dict
-        Track to the callsign it mostly has, or to its own name.
+    labels, labels_before : dict
+        Track to the callsign it mostly has, or to its own name; of the epochs that are judged, and of all.
     with_levels : frozenset of str
         Tracks with a protection level anywhere.
     period_s : float
         Usual time between epochs of a track; 1 s where no track has two. [s]
     doubts : list of str
-        That the positions do not move as the recording says, and how many tracks were divided.
+        That the positions do not move as the recording says.
+    flights : list of str
+        How many tracks were divided.
     position_doubts : list of str
         That they do not travel as its speeds say.
+    ends : DataFrame
+        ``track``, ``start`` and ``end`` of every track that is judged. [GPS ns]
     """
 
     reading: PiecedReading
@@ -121,42 +106,108 @@ class InPieces:
     claimed: Claimed
     plausibility: Plausibility
     labels: dict[str, str]
+    labels_before: dict[str, str]
     with_levels: frozenset[str]
     period_s: float
     doubts: list[str]
+    flights: list[str]
     position_doubts: list[str]
+    ends: pl.DataFrame
 
 
-def in_pieces(
-    path: Path, columns: Mapping[str, str] | None, *, sigma_m: float | None, limits: Limits, rnp_m: float, piece_rows: int
-) -> InPieces:
+@dataclass(frozen=True)
+class Request:
+    """How a table is read in pieces, and what its positions are compared with; the rest as of :func:`navbound.run.analyze.material`."""
+
+    columns: Mapping[str, str] | None
+    sigma_m: float | None
+    limits: Limits
+    rnp_m: float
+    piece_rows: int
+    truth: PiecedTruth
+    way: Way
+
+
+def in_pieces(path: Path, request: Request) -> InPieces:
     """Read a text table or a Parquet file in pieces of about so many rows and make its epochs ready to be judged.
+
+    With a truth or a route the pieces hold whole tracks: both are looked at along a whole track.
 
     Raises
     ------
     FormatError, InputError
         As :func:`navbound.run.analyze.material`.
     """
-    reading = read_pieces(path, columns=columns, piece_rows=piece_rows)
-    checker, claims, epochs = Checker(limits), Claims(sigma_m), Frames()
-    axes, speeds, flights = Axes(), Speeds(), Flights()
-    steps, labels = _Steps(reading.n_rows), _Labels(reading.names)
-    for part in reading.spread():
-        checker.see(part)
-    for piece, after in _with_the_next(reading.epochs(), _core.SPEEDS_BESIDE):
-        axes.see(piece)
-        claimed = claims.claim(piece)
-        speeds.see(claimed.epochs)
-        ready = covariance_status(without_path(checker.check(claimed.epochs, after))).with_columns(pl.lit(float(rnp_m)).alias("rnp_m"))
+    reading = read_pieces(path, columns=request.columns, piece_rows=request.piece_rows)
+    request.truth.see_columns(reading.columns)
+    checks, epochs, flights = _Checks(reading, request), Frames(), Flights(dividing=not request.way.named)
+    steps, labels, ends = _Steps(reading.n_rows), _Labels(reading.names), _Ends()
+    parts = checks.parts()
+    if request.truth.stated or request.way.along_tracks:
+        parts = whole_tracks(parts)
+    if request.truth.stated:
+        parts = (request.truth.compared(part) for part in parts)
+    for part in request.way.on_path(parts):
+        ready = covariance_status(part).with_columns(pl.lit(float(request.rnp_m)).alias("rnp_m"))
         ready = flights.divide(ready)
         labels.see(ready)
         steps.see(ready)
+        ends.see(ready)
         epochs.put(ready.drop(AUXILIARY, strict=False))
     reading.pieces.close()
-    of_tracks = (labels.usual(), frozenset(labels.with_levels), steps.median_s())
-    doubts = [*axes.words(), *flights.words()]
-    lost = flights.divide_left_out(reading.left_out)
-    return InPieces(reading, epochs, lost, claimed, checker.plausibility(), *of_tracks, doubts, speeds.doubts())
+    return InPieces(
+        reading,
+        epochs,
+        left_out=flights.divide_left_out(reading.left_out),
+        claimed=checks.claimed,
+        plausibility=checks.checker.plausibility(),
+        labels=labels.usual(),
+        labels_before=checks.labels.usual(),
+        with_levels=frozenset(labels.with_levels),
+        period_s=steps.median_s(),
+        doubts=checks.axes.words(),
+        flights=flights.words(),
+        position_doubts=checks.speeds.doubts(),
+        ends=ends.table(),
+    )
+
+
+class _Checks:
+    """Claims and plausibility of every epoch, and what the recording says of itself."""
+
+    def __init__(self, reading: PiecedReading, request: Request) -> None:
+        self._reading, self._claims = reading, Claims(request.sigma_m)
+        self.checker, self.axes, self.speeds = Checker(request.truth.limits(request.limits)), Axes(), Speeds()
+        self.labels = _Labels(reading.names)
+        self.claimed: Claimed
+
+    def parts(self) -> Iterator[pl.DataFrame]:
+        """Pieces with their covariance and status."""
+        for part in self._reading.spread():
+            self.checker.see(part)
+        for piece, after in _with_the_next(self._reading.epochs(), _core.SPEEDS_BESIDE):
+            self.axes.see(piece)
+            self.claimed = self._claims.claim(piece)
+            self.speeds.see(self.claimed.epochs)
+            self.labels.see(piece)
+            yield self.checker.check(self.claimed.epochs, after)
+
+
+class _Ends:
+    """First and last epoch of every track."""
+
+    def __init__(self) -> None:
+        self._spans: dict[str, tuple[int, int]] = {}
+
+    def see(self, epochs: pl.DataFrame) -> None:
+        times = epochs.group_by("track").agg(start=pl.col("time_ns").min(), end=pl.col("time_ns").max())
+        for track, start, end in times.iter_rows():
+            before = self._spans.get(track, (start, end))
+            self._spans[track] = (min(start, before[0]), max(end, before[1]))
+
+    def table(self) -> pl.DataFrame:
+        rows = [(track, *span) for track, span in self._spans.items()]
+        return pl.DataFrame(rows, schema={"track": pl.String, "start": pl.Int64, "end": pl.Int64}, orient="row")
 
 
 def _with_the_next(pieces: Iterator[pl.DataFrame], n: int) -> Iterator[tuple[pl.DataFrame, pl.DataFrame]]:
