@@ -140,33 +140,3 @@ def test_the_lines_of_the_page_run(monkeypatch: pytest.MonkeyPatch) -> None:
     names: dict[str, Any] = {}
     exec(code.group(1), names)
     assert names["fused"].mode.count("coasting") == 64
-
-
-@pytest.mark.parametrize("late_ms", [500, -500, 300, 150])
-def test_fixes_whose_times_are_wrong_from_the_start_are_not_ok_once_they_have_contradicted(late_ms: int) -> None:
-    """Half a second is 72 m here. The filter starts right, is pulled along, and agrees with wrong positions in the end."""
-    imu, motion = table("imu.csv"), table("motion.csv")
-    noise = np.random.default_rng(0).normal(size=(motion.height, 3)) * [1.0, 1.0, 1.5]
-    place = motion.select("lat_rad", "lon_rad", "h_m").to_numpy()
-    fixes = ins.Fixes(
-        motion["time_ns"].to_numpy() + late_ms * 10**6,
-        place + noise / np.column_stack([np.full(motion.height, 6.37e6), 6.37e6 * np.cos(place[:, 0]), np.ones(motion.height)]),
-        np.tile(np.diag([1.0, 1.0, 2.25]), (motion.height, 1, 1)),
-        hpl_m=20.0,
-        vpl_m=35.0,
-    )
-    fused = ins.fuse(ins.Imu.of_table(imu), ins.Aiding(fixes=fixes), ins.Start.of_table(motion))
-    ok = np.array(fused.status) == "ok"
-    foreign = [k for k, reasons in enumerate(fused.reasons) if {"tuning_foreign", "filter_contradicted", "gnss_time"} & set(reasons)]
-    if abs(late_ms) >= 300:
-        assert foreign
-        assert not ok[foreign[0] :].any()
-    truth = pl.DataFrame({"time_ns": fused.time_ns}).join(motion, on="time_ns")
-    east_north = apart_enu_m(truth, pl.DataFrame(dict(zip(("lat_rad", "lon_rad", "h_m"), fused.position.T, strict=True))))[:, :2]
-    # Before nothing has contradicted it an `ok` one is inside its level.
-    assert (np.hypot(*east_north.T)[ok] <= fused.hpl_m[ok]).all()
-    # 20 m and three deviations of 0.1 s at the least speed of the flight, in each level that is given, the first too. Two positions with a
-    # deviation of 1 m along the way make 1.4 m/s of their speed uncertain: four of them.
-    speed_mps = float(np.hypot(motion["vel_n_mps"], motion["vel_e_mps"]).min())
-    assert np.isfinite(fused.hpl_m[:5]).all()
-    assert (fused.hpl_m[np.isfinite(fused.hpl_m)] > 20.0 + 0.3 * (speed_mps - 6.0)).all()

@@ -3,7 +3,6 @@
 //! Nothing tests a solved position: its covariance bounds no fault. It serves to contradict the filter; a level it has only where its receiver
 //! brings one. That a filter falls out with solved positions convicts nobody, neither the unit nor the receiver. Provenance: ours.
 
-use super::level::late_m;
 use super::motion::{ACCELERATION_MPS2, STEP_MOST_S};
 use super::{Guard, Looked};
 use crate::frame::ecef_from_geodetic;
@@ -34,18 +33,16 @@ impl Guard {
             return true;
         }
         let before = self.looked.take();
-        let snapshot = Snapshot::solved(timed.time, m.position, m.covariance);
-        let difference = filter.against(&snapshot);
-        let mut looked = seen(snapshot, m, before.as_ref(), difference.as_ref(), age_sigma_s);
+        let mut looked = seen(timed.time, m, before.as_ref(), age_sigma_s);
         let mut usable = true;
-        if let Some(d) = difference {
+        if let Some(d) = filter.against(&looked.snapshot) {
             let settled = !matches!(filter.mode_now(), Mode::Aligning);
             // A difference of positions is no velocity of its own.
             let velocity = looked.velocity.as_ref().filter(|_| m.velocity_ned_mps.is_some());
             let tests = self.compare(&d, &looked, velocity, settled);
             self.tests = Some((timed.time, tests));
             if let Some(square) = square(&d) {
-                self.shares.untested(timed.time, &Block { square, freedom: COMPONENTS });
+                self.shares.innovations(timed.time, &Block { square, freedom: COMPONENTS });
             }
             usable = !tests.fail();
         }
@@ -83,19 +80,19 @@ impl Guard {
     }
 }
 
-/// A solved position as a snapshot. Its level holds for the age that is declared, at its own speed; where it is the first and states none, at the
-/// filter's. Where nobody knows the speed there is no level.
-fn seen(snapshot: Snapshot, m: &PositionFix, before: Option<&Looked>, filter: Option<&Difference>, age_sigma_s: f64) -> Looked {
+/// A solved position as a snapshot. Its level holds for the age that is declared.
+fn seen(time: GpsTime, m: &PositionFix, before: Option<&Looked>, age_sigma_s: f64) -> Looked {
+    let snapshot = Snapshot::solved(time, m.position, m.covariance);
     let velocity = match &m.velocity_ned_mps {
         Some((v, r)) => Some(SnapshotVelocity { enu_mps: Vector3::new(v.y, v.x, -v.z), covariance: enu(r) }),
         None => before.and_then(|b| between(&b.snapshot, &snapshot)),
     };
-    let late_m = late_m(age_sigma_s, velocity.as_ref(), filter);
+    let speed = velocity.map_or(0.0, |v| hypot(v.enu_mps.x, v.enu_mps.y));
     let (ranges_agree, [h, v]) = match m.level_m {
         Some(level) => (RangesAgree::Yes, level),
         None => (RangesAgree::Untestable, [f64::NAN; 2]),
     };
-    Looked { snapshot, velocity, ranges_agree, level_m: [h + late_m, v] }
+    Looked { snapshot, velocity, ranges_agree, level_m: [h + 3.0 * age_sigma_s * speed, v] }
 }
 
 /// Mean velocity between two positions, and what an acceleration meanwhile leaves of it.
@@ -161,25 +158,14 @@ mod tests {
             velocity_ned_mps: Some((Vector3::new(30.0, 40.0, 5.0), Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 3.0)))),
             level_m,
         };
-        let looked = seen(s.clone(), &fix(Some([10.0, 20.0])), None, None, 0.1);
+        let looked = seen(s.time, &fix(Some([10.0, 20.0])), None, 0.1);
         // Three deviations of a tenth of a second at 50 m/s.
         assert_eq!(looked.level_m, [25.0, 20.0]);
         assert_eq!(looked.ranges_agree, RangesAgree::Yes);
         let v = looked.velocity.unwrap();
         assert_eq!(v.enu_mps, Vector3::new(40.0, 30.0, -5.0));
         assert_eq!(v.covariance, Matrix3::from_diagonal(&Vector3::new(2.0, 1.0, 3.0)));
-        let without = seen(s.clone(), &fix(None), None, None, 0.1);
+        let without = seen(s.time, &fix(None), None, 0.1);
         assert!(without.ranges_agree == RangesAgree::Untestable && without.level_m.iter().all(|l| l.is_nan()));
-        // The first position without a velocity goes as fast as the filter says; where nobody says it, it has no level.
-        let still = PositionFix { velocity_ned_mps: None, ..fix(Some([10.0, 20.0])) };
-        let filter = Difference {
-            position: Displacement::from_vector(Vector3::zeros()),
-            covariance: Covariance::claim_symmetric(Matrix3::identity()),
-            velocity_mps: Vector3::new(-60.0, 80.0, 3.0),
-            velocity_m2ps2: Matrix3::identity(),
-        };
-        assert_eq!(seen(s.clone(), &still, None, Some(&filter), 0.1).level_m, [40.0, 20.0]);
-        assert!(seen(s.clone(), &still, None, None, 0.1).level_m[0].is_nan());
-        assert_eq!(seen(s, &still, None, None, 0.0).level_m, [10.0, 20.0]);
     }
 }

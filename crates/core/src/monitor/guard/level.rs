@@ -4,8 +4,8 @@ use super::Guard;
 use crate::frame::{Covariance, EcefPosition, Enu, ecef_from_geodetic};
 use crate::monitor::judgement::{CarriedFacts, Decision, RangesAgree, Reason, SnapshotFacts, Source};
 use crate::quantity::{GpsTime, OutOfDomain, Risk};
-use crate::solution::ins::{Difference, Solution};
-use crate::solution::snapshot::{Snapshot, SnapshotVelocity};
+use crate::solution::ins::Solution;
+use crate::solution::snapshot::Snapshot;
 use crate::solution::wls::horizontal_axes;
 use crate::special::chi::chi_factor;
 use crate::special::float::{hypot, sqrt};
@@ -70,13 +70,6 @@ impl Guard {
         let level_m = core::array::from_fn(|k| level[k] + factor[k] * (sigma[k] - before[k]).max(0.0) + fault);
         Some(CarriedFacts { age_s: t, level_m })
     }
-}
-
-/// What an error of the declared age makes of a position, three deviations of it \[m\]: at its own speed, or the filter's where it has none. Where
-/// nobody knows the speed it is no number, and there is no level.
-pub(super) fn late_m(age_sigma_s: f64, own: Option<&SnapshotVelocity>, filter: Option<&Difference>) -> f64 {
-    let moves = own.map(|v| v.enu_mps).or(filter.map(|d| d.velocity_mps));
-    if age_sigma_s > 0.0 { 3.0 * age_sigma_s * moves.map_or(f64::NAN, |v| hypot(v.x, v.y)) } else { 0.0 }
 }
 
 /// Distance between a snapshot and another position of the antenna, horizontal and vertical \[m\].

@@ -7,6 +7,7 @@ use crate::quantity::{GpsTime, Unavailable};
 use crate::signal::{SatelliteId, SatelliteRange};
 use crate::solution::snapshot::{RANGES_MOST, Ranges, Snapshot, SnapshotVelocity, rate_sights, velocity};
 use crate::solution::wls::WeightedSight;
+use crate::special::float::hypot;
 
 impl Guard {
     /// One range of each satellite, and none that is the last one again to the bit: a receiver that has stopped measures nothing.
@@ -32,7 +33,7 @@ impl Guard {
         let mut snapshot = self.solver.position(time, ranges)?;
         let (sights, residuals, n) = sights(&snapshot);
         let monitored = self.raim.monitored(&sights[..n], &residuals[..n])?;
-        let (level_m, mut excluded) = ([monitored.levels.hpl.m(), monitored.levels.vpl_m()], None);
+        let (mut level_m, mut excluded) = ([monitored.levels.hpl.m(), monitored.levels.vpl_m()], None);
         let ranges_agree = match monitored.decision {
             Exclusion::Nothing if monitored.levels.detail.redundancy > 0 => RangesAgree::Yes,
             Exclusion::Nothing => RangesAgree::Untestable,
@@ -47,6 +48,8 @@ impl Guard {
             snapshot = self.solver.position(time, ranges)?;
         }
         let velocity = self.velocity(&snapshot, ranges);
+        let speed = velocity.map_or(0.0, |v| hypot(v.enu_mps.x, v.enu_mps.y));
+        level_m[0] += 3.0 * self.settings.age_sigma_s * speed;
         Ok((Looked { snapshot, velocity, ranges_agree, level_m }, excluded))
     }
 

@@ -37,7 +37,7 @@ use crate::solution::snapshot::{Ranges, SnapshotVelocity, Solver};
 use crate::special::gamma::{chi_square_factor, chi_square_tail};
 use course::Course;
 use height::Height;
-use level::{apart, late_m};
+use level::apart;
 
 /// Risk of a false contradiction of one test at one instant: 1e-5 an hour over four tests and 3600 seconds. Provenance: re-derived, of the
 /// false alarm rate of en route to non-precision approach.
@@ -196,7 +196,6 @@ impl Guard {
             filter.heard_velocity(time, velocity);
         }
         let difference = filter.against(&looked.snapshot);
-        looked.level_m[0] += late_m(self.settings.age_sigma_s, looked.velocity.as_ref(), difference.as_ref());
         let difference = difference.filter(|_| looked.ranges_agree == RangesAgree::Yes);
         let mut out = [None; EXCLUDED_MOST];
         out[0] = excluded;

@@ -37,8 +37,6 @@ pub struct Shares {
     weight: f64,
     last: Option<GpsTime>,
     foreign: bool,
-    /// What was heard is of solved positions, which nothing tests.
-    untested: bool,
 }
 
 impl Shares {
@@ -56,7 +54,6 @@ impl Shares {
             weight: 0.0,
             last: None,
             foreign: false,
-            untested: false,
         }
     }
 
@@ -103,18 +100,11 @@ impl Shares {
         self.weight = keep * self.weight + 1.0;
     }
 
-    /// The same of a solved position, which nothing tests. A filter that it pulls along agrees with it in the end, right or wrong: what contradicted
-    /// stays until a new start.
-    pub fn untested(&mut self, now: GpsTime, block: &Block) {
-        self.untested = true;
-        self.innovations(now, block);
-    }
-
     /// What they say. Before half a window has been heard the declared errors stand.
     pub fn tuning(&mut self) -> Tuning {
         let mean = self.mean / self.weight;
         let most = if self.foreign { DECLARED } else { FOREIGN };
-        self.foreign = (self.foreign && self.untested) || (self.weight >= 0.5 * WINDOW as f64 && !(mean <= most));
+        self.foreign = self.weight >= 0.5 * WINDOW as f64 && !(mean <= most);
         if self.foreign { Tuning::Foreign } else { Tuning::AsDeclared }
     }
 }
@@ -165,12 +155,6 @@ mod tests {
         };
         for (k, t) in tunings(&squares).iter().enumerate().skip(6) {
             assert_eq!(matches!(t, Tuning::Foreign), mean(k) > 1.5, "{k}");
-        }
-        // Nothing tests a solved position.
-        let mut shares = Shares::new();
-        for (k, s) in squares.iter().enumerate() {
-            shares.untested(at(k as f64), &Block { square: 3.0 * s, freedom: 3 });
-            assert_eq!(matches!(shares.tuning(), Tuning::Foreign), k >= 5, "{k}");
         }
         // One instant counts no more than ten.
         assert!(tunings(&[&[1.0; 30][..], &[1e9], &[1.0; 30]].concat()).iter().all(|t| matches!(t, Tuning::AsDeclared)));
