@@ -42,7 +42,8 @@ def list_command(
     if not shown:
         raise InputError("airport", str(airport), domain=f"airports with procedures in {file}")
     if json:
-        from navbound.cli.printed import ProcedureList, write  # noqa: PLC0415
+        from navbound.cli.printed import write  # noqa: PLC0415
+        from navbound.cli.procedure_records import ProcedureList  # noqa: PLC0415
 
         write(ProcedureList(str(file), database.header, database.counts, shown))
         return
@@ -84,9 +85,9 @@ def show_command(
     if out is not None:
         _write(out, drawn.page(procedure, findings, heights))
     if json:
-        from navbound.cli import printed  # noqa: PLC0415
+        from navbound.cli import printed, procedure_records  # noqa: PLC0415
 
-        record = printed.ShownProcedure(
+        record = procedure_records.ShownProcedure(
             name=procedure.name,
             file=procedure.file,
             line=procedure.line,
@@ -95,7 +96,7 @@ def show_command(
             levels=list(procedure.levels),
             notes=list(procedure.notes),
             vertical_path=heights.path,
-            obstacle_surface=None if heights.surface is None else printed.ObstacleSurface(*heights.surface),
+            obstacle_surface=None if heights.surface is None else procedure_records.ObstacleSurface(*heights.surface),
             vertical_words=list(heights.words),
             findings=findings,
         )
@@ -128,7 +129,8 @@ def check_command(
     contradictions = [f for f in findings if not f.remark]
     others = Counter(f.kind for f in findings if f.remark)
     if json:
-        from navbound.cli.printed import CheckedProcedures, LocatedFinding, write  # noqa: PLC0415
+        from navbound.cli.printed import write  # noqa: PLC0415
+        from navbound.cli.procedure_records import CheckedProcedures, LocatedFinding  # noqa: PLC0415
 
         rows = [LocatedFinding(**asdict(f), where=f.where) for f in findings]
         write(CheckedProcedures(str(file), database.counts, database.n_refused, database.refused, rows))

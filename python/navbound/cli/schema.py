@@ -6,7 +6,6 @@ import json as encoder
 import sys
 from functools import reduce
 from operator import or_
-from types import GenericAlias
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -71,23 +70,40 @@ def _studies() -> Any:
     return reduce(or_, OF_STUDIES.values())
 
 
-def _printed(name: str, *, several: bool = False) -> Callable[[], Any]:
-    def record() -> Any:
-        from navbound.cli import printed  # noqa: PLC0415
+def _methods() -> Any:
+    from navbound.cli.printed import Methods  # noqa: PLC0415
 
-        one = getattr(printed, name)
-        return GenericAlias(list, (one,)) if several else one
+    return Methods
+
+
+def _scenarios() -> Any:
+    from navbound.cli.printed import ListedScenario  # noqa: PLC0415
+
+    return list[ListedScenario]
+
+
+def _verified() -> Any:
+    from navbound.cli.printed import Verified  # noqa: PLC0415
+
+    return list[Verified]
+
+
+def _procedures(name: str) -> Callable[[], Any]:
+    def record() -> Any:
+        from navbound.cli import procedure_records  # noqa: PLC0415
+
+        return getattr(procedure_records, name)
 
     return record
 
 
 _PRINTED: dict[str, Callable[[], Any]] = {
-    "methods": _printed("Methods"),
-    "scenarios": _printed("ListedScenario", several=True),
-    "verify": _printed("Verified", several=True),
-    "procedures-list": _printed("ProcedureList"),
-    "procedures-show": _printed("ShownProcedure"),
-    "procedures-check": _printed("CheckedProcedures"),
+    "methods": _methods,
+    "scenarios": _scenarios,
+    "verify": _verified,
+    "procedures-list": _procedures("ProcedureList"),
+    "procedures-show": _procedures("ShownProcedure"),
+    "procedures-check": _procedures("CheckedProcedures"),
 }
 RECORDS: dict[str, Callable[[], Any]] = {
     **dict.fromkeys(("analyze", "evaluate", "fly", "show"), _summary),
