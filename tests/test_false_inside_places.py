@@ -11,7 +11,9 @@ import pytest
 import navbound
 from navbound.read import read
 from navbound.read.pieces.reading import read_pieces
-from test_false_inside import N, columns, run
+from navbound.run import analyze
+from navbound.run.judge import judge
+from test_false_inside import RNP_M, START_S, N, columns, run
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -118,3 +120,23 @@ def test_a_truth_that_nothing_reads_is_named(tmp_path: Path, name: str) -> None:
 def test_other_distances_and_other_truths_are_not(tmp_path: Path, name: str) -> None:
     verdict = run(tmp_path, **{name: np.full(N, 9e5)}).summary.verdict
     assert (verdict.id, verdict.unread, verdict.n_stated_worse) == ("inside", [], 0)
+
+
+@pytest.mark.parametrize("rows", [30, N, 1900])
+@pytest.mark.parametrize("sigma", [5.0, 0.5])
+def test_a_stand_under_stamps_that_crawl_is_not_shown_to_be_inside(tmp_path: Path, rows: int, sigma: float) -> None:
+    """Rows that came once a second, stamped a millisecond apart: the aircraft has been elsewhere for minutes."""
+    time = START_S + 1e-3 * np.arange(rows)
+    file = tmp_path / "stands.csv"
+    pl.DataFrame({"time": time, "lat": 48.0, "lon": 2.0, "sde": sigma, "sdn": sigma}).write_csv(file)
+    result = judge(analyze.material(file, requirement="RNP 0.3", rnp_m=RNP_M))
+    assert result.summary.verdict.inside is None
+    assert set(result.epochs["reason_id"]) == {"position_stale"}
+
+
+def test_a_fast_table_of_a_stand_is_as_it_was(tmp_path: Path) -> None:
+    """A hundred rows a second are a receiver's, and a position that stands in them is old after 2 s."""
+    file = tmp_path / "fast.csv"
+    pl.DataFrame({"time": START_S + 1e-2 * np.arange(400), "lat": 48.0, "lon": 2.0, "sde": 5.0, "sdn": 5.0}).write_csv(file)
+    result = judge(analyze.material(file, requirement="RNP 0.3", rnp_m=RNP_M))
+    assert result.epochs["reason_id"].null_count() == 201

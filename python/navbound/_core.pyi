@@ -225,7 +225,7 @@ _Reports = tuple[NDArray[np.int64], NDArray[np.int64], _F, _F, _F]
 
 SPEEDS_BESIDE: int
 GGA_QUALITIES: list[int]
-LEAST_SATELLITES: int
+DETERMINING_SATELLITES: int
 MOST_DILUTION: float
 NEIGHBOUR_RISK: float
 

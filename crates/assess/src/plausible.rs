@@ -43,8 +43,9 @@ pub struct Judged {
 ///
 /// An unchanged position is held, and stale in time, where the aircraft says that it moves. Where it says nothing of its speed, a position
 /// whose bits repeat for longer than the stale time is stale: measurements have noise, and nobody vouches that the aircraft stands. So is one
-/// that comes back to the bits of one of the last two different positions. A speed that fell faster than an aircraft brakes is no speed, and
-/// the time in which the aircraft said that it stood is no time to fly in. Where the aircraft says that it moves, a position that makes good
+/// that comes back to the bits of one of the last two different positions, and every one of a track that never leaves its first while its reports come
+/// faster than a receiver computes: by time stamps that crawl nothing would ever be old. A speed that fell faster than an aircraft brakes is no speed, and
+/// the time in which the aircraft said that it stood is no time to fly in; noise of decimetres on such a hold changes nothing. Where the aircraft says that it moves, a position that makes good
 /// less than half the way by its reported speed, the noise taken off, is stale, too: noise on a held position is no flight.
 ///
 /// Provenance: ours.
@@ -63,6 +64,34 @@ pub struct Survey {
     reports_speed: bool,
     steps_mps: Vec<f64>,
     from: Option<(GpsTime, EcefPosition)>,
+    stand: Stand,
+}
+
+/// A track that never leaves its first position.
+#[derive(Debug, Clone, Copy, Default)]
+struct Stand {
+    first: Option<Report>,
+    last: Option<GpsTime>,
+    n: u32,
+    moved: bool,
+}
+
+/// Least reports, and least time between them \[s\], of a receiver: none computes two hundred positions in a second. Provenance: ours.
+const STAND: (u32, f64) = (10, 0.005);
+
+impl Stand {
+    fn see(&mut self, report: &Report) {
+        let first = self.first.get_or_insert(*report);
+        self.moved |= report.lat_rad != first.lat_rad || report.lon_rad != first.lon_rad;
+        self.last = Some(report.time);
+        self.n = self.n.saturating_add(1);
+    }
+
+    /// Whether its reports come faster than any receiver's: nothing shows that their clock goes on, or that anything is measured.
+    fn crawls(&self) -> bool {
+        let Some((first, last)) = self.first.zip(self.last).filter(|_| !self.moved && self.n >= STAND.0) else { return false };
+        last.seconds_since(first.time) < STAND.1 * f64::from(self.n - 1)
+    }
 }
 
 impl Survey {
@@ -84,6 +113,7 @@ impl Survey {
         }
         for (index, report) in reports.iter().enumerate() {
             let here = sea_level(report).map_err(|refusal| (index, refusal))?;
+            self.stand.see(report);
             let Some((time, before)) = self.from else {
                 self.from = Some((report.time, here));
                 continue;
@@ -116,6 +146,8 @@ impl Survey {
 pub struct Track {
     limits: Limits,
     silent: bool,
+    /// It never says that it moves and never does, under time stamps that crawl.
+    frozen: bool,
     last: Option<(Report, EcefPosition)>,
     jumped: Option<GpsTime>,
     window: Option<Window>,
@@ -134,10 +166,12 @@ impl Track {
     #[must_use]
     pub fn new(survey: Survey, limits: &Limits) -> Self {
         let silent = !survey.reports_speed;
+        let frozen = silent && limits.moving_mps.is_finite() && survey.stand.crawls();
         let limits = if silent { Limits { max_speed_mps: survey.own_speed(limits), ..*limits } } else { *limits };
         Self {
             limits,
             silent,
+            frozen,
             last: None,
             jumped: None,
             window: None,
@@ -187,7 +221,8 @@ impl Track {
             self.last = Some((*report, here));
             self.window = Some(Window::begin(report, here));
             self.gone.step(report, false, limits);
-            return Ok(Judged { finding: Finding::Plausible, age_s: 0.0, step_m: 0.0, too_fast_mps: 0.0, speed_doubted });
+            let finding = if self.frozen { Finding::Stale } else { Finding::Plausible };
+            return Ok(Judged { finding, age_s: 0.0, step_m: 0.0, too_fast_mps: 0.0, speed_doubted });
         };
         let elapsed = report.time.seconds_since(fix.time);
         let unchanged = report.lat_rad == fix.lat_rad && report.lon_rad == fix.lon_rad;
@@ -216,10 +251,11 @@ impl Track {
             }
             self.last = Some((*report, here));
         }
+        let stands_s = self.gone.stands_falsely(report, limits).filter(|_| !unchanged);
         let returned = repeated(report, repeated_since, &Gone::default(), limits) == Finding::Stale && report.speed_mps.is_nan();
-        if finding != Finding::Jump && (behind.is_some() || returned) {
+        if finding != Finding::Jump && (behind.or(stands_s).is_some() || returned || self.frozen) {
             finding = Finding::Stale;
-            age_s = age_s.max(behind.unwrap_or_else(|| report.time.seconds_since(repeated_since)));
+            age_s = age_s.max(behind.or(stands_s).unwrap_or_else(|| report.time.seconds_since(repeated_since)));
         }
         let settling = self.jumped.is_some_and(|t| within(report.time, t, limits.settle_s));
         if settling && matches!(finding, Finding::Plausible | Finding::Repeated | Finding::Late) {

@@ -15,6 +15,7 @@ const LIMITS: Limits = Limits {
     moving_mps: 15.0,
     stale_after_s: 2.0,
     settle_s: 30.0,
+    period_s: 0.0,
 };
 
 /// Radians of latitude in a metre at the equator, where the meridian's radius is 6335439 m.
@@ -29,6 +30,7 @@ fn track(positions_m: &[f64], speed_mps: f64) -> Vec<Report> {
         lon_rad: 0.3,
         speed_mps,
         variance_m2: f64::NAN,
+        height: None,
     };
     positions_m.iter().enumerate().map(report).collect()
 }
@@ -64,6 +66,7 @@ fn a_flight_in_hardly_any_time_is_a_jump_however_small_its_steps() {
         lon_rad: 0.3,
         speed_mps: f64::NAN,
         variance_m2: f64::NAN,
+        height: None,
     };
     let verdicts = findings(&(0..1200).map(crawl).collect::<Vec<_>>());
     // 400 m/s for two seconds of latency and 0.1 km of noise are 0.9 km: thirteen steps.
@@ -312,6 +315,7 @@ fn a_step_is_judged_by_the_time_of_its_position_where_that_is_known() {
         lon_rad: 0.3,
         speed_mps: 200.0,
         variance_m2: f64::NAN,
+        height: None,
     };
     let wide = Limits { latency_s: 10.0, ..LIMITS };
     let second = |a: Report, b: Report| judge(&[a, b], &wide).unwrap()[1];
@@ -329,4 +333,36 @@ fn a_step_is_judged_by_the_time_of_its_position_where_that_is_known() {
     // An ordinary step says nothing.
     let ordinary = second(at(30, None, 0.0), at(31, None, 200.0));
     assert_eq!((ordinary.finding, ordinary.too_fast_mps), (Finding::Plausible, 0.0));
+}
+
+#[test]
+fn noise_on_a_hold_that_states_no_speed_after_flight_is_stale_as_the_hold_is() {
+    // 70 m/s for 100 s, then decimetres about the last place at a speed of 0.
+    let positions: Vec<f64> =
+        (0..400).map(|k| 70.0 * f64::from(k.min(100)) + if k > 100 { 0.5 * (12.9 * f64::from(k)).sin() } else { 0.0 }).collect();
+    let speed = |k: usize| if k < 101 { 70.0 } else { 0.0 };
+    let reports: Vec<Report> =
+        track(&positions, 0.0).into_iter().enumerate().map(|(k, each)| Report { speed_mps: speed(k), ..each }).collect();
+    let found = findings(&reports);
+    assert!(found[..104].iter().all(|f| *f == Finding::Plausible));
+    assert!(found[104..].iter().all(|f| *f == Finding::Stale), "{:?}", &found[100..110]);
+    let standing = Limits { moving_mps: f64::INFINITY, ..LIMITS };
+    assert!(judge(&reports, &standing).unwrap().iter().all(|j| j.finding == Finding::Plausible));
+}
+
+#[test]
+fn a_track_that_never_leaves_its_first_place_while_its_reports_come_faster_than_a_receiver_s_is_stale() {
+    let stands = |n: i64, step_ns: i64, speed_mps: f64| {
+        let at = |k: i64| Report { time: GpsTime::from_nanoseconds(k * step_ns), ..track(&[0.0], speed_mps)[0] };
+        findings(&(0..n).map(at).collect::<Vec<_>>())
+    };
+    assert!(stands(10, 1_000_000, f64::NAN).iter().all(|f| *f == Finding::Stale));
+    assert!(stands(1900, 1_000_000, f64::NAN).iter().all(|f| *f == Finding::Stale));
+    // Too few to say, as fast as a receiver, and one that says that it stands.
+    for (n, step_ns, speed_mps) in [(9, 1_000_000, f64::NAN), (300, 6_000_000, f64::NAN), (1900, 1_000_000, 0.0)] {
+        assert!(stands(n, step_ns, speed_mps).iter().all(|f| *f == Finding::Plausible), "{n} {step_ns}");
+    }
+    // One other place, and the table is of a fast unit.
+    let at = |k: i64| Report { time: GpsTime::from_nanoseconds(k * 1_000_000), ..track(&[if k < 1000 { 0.0 } else { 5.0 }], f64::NAN)[0] };
+    assert!(findings(&(0..1900).map(at).collect::<Vec<_>>()).iter().all(|f| *f == Finding::Plausible));
 }

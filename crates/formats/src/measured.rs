@@ -20,6 +20,9 @@ pub const GSA_DIMENSIONS: f64 = 3.0;
 /// Provenance: derived \[1\].
 pub const LEAST_SATELLITES: u32 = 3;
 
+/// Fewest satellites that determine a position with its height and the clock; with three something else stands in. Provenance: derived \[1\].
+pub const DETERMINING_SATELLITES: u32 = 4;
+
 /// Quality of an RTKLIB solution: fixed, float, SBAS, differential, single, precise. Not 0 (none), 7 (dead reckoning). Provenance: standard
 /// (RTKLIB manual, section B.1).
 pub const RTKLIB_QUALITIES: &[u8] = &[1, 2, 3, 4, 5, 6];

@@ -1,6 +1,7 @@
 //! What a lane counted.
 
 use crate::codec::{Damaged, Reader, Writer};
+use navbound_core::quantity::{Reason, Status};
 
 /// Why something that arrived is no record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,6 +21,8 @@ pub enum Refused {
     Undated,
     /// A line of an aircraft without a position.
     NoPosition,
+    /// An accuracy of no position.
+    AccuracyAlone,
     /// Later than its arrival by more than two seconds.
     FromTheFuture,
     /// Earlier than its arrival by more than the retention.
@@ -30,7 +33,7 @@ pub enum Refused {
 
 impl Refused {
     /// All, in the order of their codes.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::NotAPosition,
         Self::Version,
         Self::TrackName,
@@ -38,6 +41,7 @@ impl Refused {
         Self::ShortMessage,
         Self::Undated,
         Self::NoPosition,
+        Self::AccuracyAlone,
         Self::FromTheFuture,
         Self::TooOld,
         Self::FleetFull,
@@ -58,6 +62,7 @@ impl Refused {
             Self::ShortMessage => "short_message",
             Self::Undated => "undated",
             Self::NoPosition => "no_position",
+            Self::AccuracyAlone => "accuracy_without_position",
             Self::FromTheFuture => "from_the_future",
             Self::TooOld => "too_old",
             Self::FleetFull => "fleet_full",
@@ -66,7 +71,7 @@ impl Refused {
 }
 
 /// Counts of a lane, beside those of its monitors.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Counters {
     /// Bytes of the source.
     pub n_bytes: u64,
@@ -86,11 +91,41 @@ pub struct Counters {
     pub n_internal: u64,
     /// What was refused, by [`Refused`].
     pub refused: [u64; Refused::ALL.len()],
+    /// Records whose position was not used, by [`Reason`].
+    pub unusable: [u64; Reason::ALL.len()],
+    /// The same without a reason.
+    pub n_unusable_otherwise: u64,
+}
+
+impl Default for Counters {
+    fn default() -> Self {
+        Self {
+            n_bytes: 0,
+            n_frames: 0,
+            n_records: 0,
+            n_duplicate: 0,
+            n_reordered: 0,
+            n_stale: 0,
+            n_expired: 0,
+            n_internal: 0,
+            refused: [0; Refused::ALL.len()],
+            unusable: [0; Reason::ALL.len()],
+            n_unusable_otherwise: 0,
+        }
+    }
 }
 
 impl Counters {
     pub(crate) const fn refuse(&mut self, reason: Refused) {
         self.refused[reason as usize] += 1;
+    }
+
+    /// A record was judged, and its position was not used, or was.
+    pub(crate) fn judged(&mut self, status: Status, reason: Option<Reason>) {
+        if !status.usable() {
+            let place = reason.and_then(|reason| self.unusable.get_mut(reason as usize));
+            *place.unwrap_or(&mut self.n_unusable_otherwise) += 1;
+        }
     }
 
     /// Frames and lines, whole or damaged, and how many of them could not be read.
@@ -113,12 +148,16 @@ impl Counters {
             ("n_internal", self.n_internal),
         ];
         let refused = Refused::ALL.into_iter().zip(self.refused).map(|(reason, n)| (format!("refused_{}", reason.id()), n));
-        own.into_iter().map(|(name, n)| (name.to_owned(), n)).chain(refused).collect()
+        // Most reasons are none of a stream: a count of nothing is left out.
+        let unusable = Reason::ALL.iter().zip(self.unusable).map(|(reason, n)| (format!("unusable_{}", reason.id()), n));
+        let unusable = unusable.chain([("unusable_otherwise".to_owned(), self.n_unusable_otherwise)]).filter(|(_, n)| *n > 0);
+        own.into_iter().map(|(name, n)| (name.to_owned(), n)).chain(refused).chain(unusable).collect()
     }
 
     pub(crate) fn write(&self, to: &mut Writer) {
         let own = [self.n_bytes, self.n_frames, self.n_records, self.n_duplicate, self.n_reordered, self.n_stale, self.n_expired];
-        own.into_iter().chain([self.n_internal]).chain(self.refused).for_each(|n| to.u64(n));
+        let last = self.unusable.into_iter().chain([self.n_unusable_otherwise]);
+        own.into_iter().chain([self.n_internal]).chain(self.refused).chain(last).for_each(|n| to.u64(n));
     }
 
     pub(crate) fn read(from: &mut Reader<'_>) -> Result<Self, Damaged> {
@@ -131,9 +170,10 @@ impl Counters {
             n_stale: from.u64()?,
             n_expired: from.u64()?,
             n_internal: from.u64()?,
-            refused: [0; Refused::ALL.len()],
+            ..Self::default()
         };
-        for count in &mut counters.refused {
+        let Self { refused, unusable, n_unusable_otherwise, .. } = &mut counters;
+        for count in refused.iter_mut().chain(unusable).chain([n_unusable_otherwise]) {
             *count = from.u64()?;
         }
         Ok(counters)

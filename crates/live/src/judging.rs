@@ -9,10 +9,11 @@ use navbound_core::bound::{AlertBound, anp};
 use navbound_core::frame::{Covariance, LatLon};
 use navbound_core::judge::{Evaluated, Judged, Sample};
 use navbound_core::monitor::motion::{Finding, Motion, Report};
-use navbound_core::monitor::neighbours::{Neighbours, Place};
+use navbound_core::monitor::neighbours::{Height, Neighbours, Place};
 use navbound_core::monitor::rnp::{Acceptance, Event};
 use navbound_core::quantity::{GpsTime, Metres, Radians, Reason, Status, Unavailable};
 use navbound_core::solution::plausible::HEIGHT_M;
+use navbound_formats::measured::DETERMINING_SATELLITES;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// What decided an alert: a time of the data, and the arrival of the input behind it.
@@ -35,6 +36,10 @@ fn sample(settings: &Settings, track: &mut Track, position: &Position) -> (Sampl
     let stated_or_assigned = settings.table.path(id).is_some() || (path.is_none() && position.fte_m.is_some());
     if let Some(method) = settings.of_stated_fte.filter(|_| stated_or_assigned) {
         track.judge.judge_by(method);
+    }
+    // Whatever its source says, fewer satellites determine no position: something else keeps it.
+    if position.status == Status::Ok && position.shown.n_sv.is_some_and(|n| n < f64::from(DETERMINING_SATELLITES)) {
+        refuse(Reason::FewSatellites);
     }
     if position.h_m.is_some_and(|h| h < HEIGHT_M.0 || h > HEIGHT_M.1) {
         refuse(Reason::InvalidNumber);
@@ -100,9 +105,22 @@ fn stated_as_none(position: &Position) -> bool {
 fn believed(settings: &Settings, track: &mut Track, position: &Position) -> Position {
     let place = position.lat_rad.zip(position.lon_rad).filter(|_| position.status.usable());
     let Some((lat_rad, lon_rad)) = place else { return *position };
+    // A source that has no position yet writes zeros; no track stands on that point to the last bit.
+    if (lat_rad, lon_rad) == (0.0, 0.0) {
+        return position.without(Reason::Reported);
+    }
     let speed_mps = position.ground_speed_mps.unwrap_or(f64::NAN);
     let variance_m2 = position.covariance_m2.map(|[ee, _, nn, ..]| ee.max(nn));
-    let report = Report { time: position.time, fixed: None, lat_rad, lon_rad, speed_mps, variance_m2: variance_m2.unwrap_or(f64::NAN) };
+    let up = |h_m| Height { h_m, variance_m2: position.covariance_m2.map_or(f64::NAN, |[.., uu]| uu) };
+    let report = Report {
+        time: position.time,
+        fixed: None,
+        lat_rad,
+        lon_rad,
+        speed_mps,
+        variance_m2: variance_m2.unwrap_or(f64::NAN),
+        height: position.h_m.filter(|h_m| h_m.is_finite()).map(up),
+    };
     // A place off the Earth is refused where it is projected, or is no covariance's.
     let finding = track.motion.see(&report, &settings.motion).map_or(Some(Reason::InvalidNumber), Finding::reason);
     let mut restless = || {

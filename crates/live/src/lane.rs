@@ -289,7 +289,13 @@ impl Lane {
         let fault = self.fault == Some(id);
         #[cfg(not(test))]
         let fault = false;
+        let n_before = out.len();
         self.counters.n_internal += u64::from(judging::judge(&self.settings, id, track, &arrived, out, fault));
+        for output in out.iter().skip(n_before) {
+            if let Output::Epoch(epoch) = output {
+                self.counters.judged(epoch.status, epoch.reason);
+            }
+        }
         if track.incarnation != incarnation && alone {
             // A receiver that was started again: its clock is the only one there is.
             self.event_time = track.last;

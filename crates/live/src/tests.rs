@@ -10,6 +10,8 @@ use proptest::prelude::*;
 use std::fmt::Write;
 use std::sync::Arc;
 
+mod places;
+
 const T0_NS: i64 = 1_447_500_000_000_000_000;
 
 fn settings() -> Settings {
@@ -45,6 +47,7 @@ fn settings() -> Settings {
             moving_mps: 15.0,
             stale_after_s: 2.0,
             settle_s: 30.0,
+            period_s: 1.0,
         },
         rnp: Metres::new(555.6),
         path: None,

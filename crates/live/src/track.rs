@@ -4,8 +4,8 @@ use crate::codec::{Damaged, Reader, Writer};
 use crate::order::Waiting;
 use crate::output::Kind;
 use navbound_core::judge::{self, Judge};
-use navbound_core::monitor::motion::{Gone, Motion, Report};
-use navbound_core::monitor::neighbours::{Neighbours, Place};
+use navbound_core::monitor::motion::{Fall, Gone, Motion, Report};
+use navbound_core::monitor::neighbours::{Height, Neighbours, Place};
 use navbound_core::quantity::{GpsTime, Metres};
 
 /// Everything that is kept of a track.
@@ -76,13 +76,21 @@ impl Track {
             to.option(report, |to, report| {
                 to.i64(report.time.nanoseconds());
                 [report.lat_rad, report.lon_rad, report.speed_mps, report.variance_m2].into_iter().for_each(|number| to.f64(number));
+                to.option(report.height, height);
             });
         }
         to.option(self.motion.jumped, |to, time| to.i64(time.nanoseconds()));
         to.option(self.motion.gone.seen, |to, time| to.i64(time.nanoseconds()));
         let gone = &self.motion.gone;
         [gone.way_m, gone.stood_s, gone.braked_mps].into_iter().for_each(|number| to.f64(number));
-        to.flag(gone.fell);
+        to.option(gone.fell, |to, fall| {
+            to.i64(fall.time.nanoseconds());
+            [fall.lat_rad, fall.lon_rad].into_iter().for_each(|number| to.f64(number));
+            to.flag(fall.from_moving);
+        });
+        to.flag(gone.moved);
+        to.f64(gone.crawled_s);
+        to.option(self.motion.height, height);
         for place in self.neighbours.last {
             to.option(place, |to, place| {
                 to.i64(place.time.nanoseconds());
@@ -110,7 +118,7 @@ impl Track {
         let report = |from: &mut Reader<'_>| {
             let time = GpsTime::from_nanoseconds(from.i64()?);
             let [lat_rad, lon_rad, speed_mps, variance_m2] = [from.f64()?, from.f64()?, from.f64()?, from.f64()?];
-            Ok(Report { time, fixed: None, lat_rad, lon_rad, speed_mps, variance_m2 })
+            Ok(Report { time, fixed: None, lat_rad, lon_rad, speed_mps, variance_m2, height: from.option(read_height)? })
         };
         let (last_different, anchor) = (from.option(report)?, from.option(report)?);
         let jumped = from.option(Reader::i64)?.map(GpsTime::from_nanoseconds);
@@ -119,9 +127,14 @@ impl Track {
             way_m: from.f64()?,
             stood_s: from.f64()?,
             braked_mps: from.f64()?,
-            fell: from.flag()?,
+            fell: from.option(|from| {
+                let time = GpsTime::from_nanoseconds(from.i64()?);
+                Ok(Fall { time, lat_rad: from.f64()?, lon_rad: from.f64()?, from_moving: from.flag()? })
+            })?,
+            moved: from.flag()?,
+            crawled_s: from.f64()?,
         };
-        let motion = Motion { last: last_different, anchor, jumped, gone };
+        let motion = Motion { last: last_different, anchor, jumped, gone, height: from.option(read_height)? };
         let place = |from: &mut Reader<'_>| {
             let time = GpsTime::from_nanoseconds(from.i64()?);
             Ok(Place { time, lat_rad: from.f64()?, lon_rad: from.f64()?, variance_m2: from.f64()? })
@@ -130,4 +143,12 @@ impl Track {
         let (waiting, states_rnp, silent) = (Waiting::read(from)?, from.flag()?, from.flag()?);
         Ok(Self { judge, incarnation, open, last, stepped, along, motion, neighbours, waiting, states_rnp, silent })
     }
+}
+
+fn height(to: &mut Writer, height: Height) {
+    [height.h_m, height.variance_m2].into_iter().for_each(|number| to.f64(number));
+}
+
+fn read_height(from: &mut Reader<'_>) -> Result<Height, Damaged> {
+    Ok(Height { h_m: from.f64()?, variance_m2: from.f64()? })
 }

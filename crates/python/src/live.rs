@@ -6,6 +6,7 @@ use crate::path::{Path, Shape};
 use crate::read::limits_of;
 use navbound_core::bound::Alerting;
 use navbound_core::judge;
+use navbound_core::monitor::motion::Limits;
 use navbound_core::monitor::rnp::{self, Chain};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Risk};
 use navbound_live::journal::{self, Next};
@@ -92,7 +93,7 @@ impl LiveSettings {
             format: Format::of(&format).ok_or_else(|| PyKeyError::new_err(format))?,
             track: TrackId::new(&track).ok_or_else(|| PyKeyError::new_err(track))?,
             judge,
-            motion: limits_of(motion)?,
+            motion: Limits { period_s: sample_period_s, ..limits_of(motion)? },
             of_stated_fte: of_stated_fte.map(alerting).transpose()?,
             rnp: Metres::new(rnp_m),
             path: path.map(|path| course(&path)),

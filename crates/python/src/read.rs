@@ -146,6 +146,8 @@ pub fn limits_of(limits: &Bound<'_, PyDict>) -> PyResult<Limits> {
         moving_mps: limit("moving_mps")?,
         stale_after_s: limit("stale_after_s")?,
         settle_s: limit("settle_s")?,
+        // A recording declares no period; its own is judged by its times.
+        period_s: 0.0,
     })
 }
 
@@ -170,6 +172,8 @@ fn reports_of((time_ns, fixed_ns, lat_rad, lon_rad, speed): &Reports<'_>) -> PyR
             speed_mps: *speed,
             // A recording's accuracy is judged elsewhere.
             variance_m2: f64::NAN,
+            // Rows of one time are judged before.
+            height: None,
         })
         .collect())
 }
@@ -280,7 +284,7 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("GGA_QUALITIES", numbers(measured::GGA_QUALITIES))?;
     m.add_function(wrap_pyfunction!(neighbours_apart, m)?)?;
     m.add("NEIGHBOUR_RISK", neighbours::RISK)?;
-    m.add("LEAST_SATELLITES", measured::LEAST_SATELLITES)?;
+    m.add("DETERMINING_SATELLITES", measured::DETERMINING_SATELLITES)?;
     m.add("MOST_DILUTION", navbound_core::solution::plausible::DILUTION)?;
     m.add("RTKLIB_QUALITIES", numbers(measured::RTKLIB_QUALITIES))?;
     m.add_class::<PlausibleTrack>()

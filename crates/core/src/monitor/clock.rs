@@ -55,6 +55,11 @@ pub(super) enum Arrival {
 /// Provenance: ours.
 const CRAWL_SHARE: f64 = 0.5;
 
+/// How long two records took to arrive, at least, that are `stamped` apart by their times and come once a `period`; both in one unit.
+pub(super) fn arrival(stamped: f64, period: f64) -> f64 {
+    if stamped < CRAWL_SHARE * period { period } else { stamped }
+}
+
 impl Clock {
     pub(super) fn new(settings: &Settings) -> Self {
         Self {
@@ -100,8 +105,7 @@ impl Clock {
 
     /// How long two records took to arrive \[ns\], at least, that are `stamped_ns` apart by their times. Where those crawl, it is a period.
     pub(super) fn arrival_ns(&self, stamped_ns: f64) -> f64 {
-        let period_ns = 1e9 * self.sample_period_s;
-        if stamped_ns < CRAWL_SHARE * period_ns { period_ns } else { stamped_ns }
+        arrival(stamped_ns, 1e9 * self.sample_period_s)
     }
 
     /// Whether nothing was accepted for longer than is permitted.

@@ -3,9 +3,11 @@
 //! A position report does not show whether it is true: a decoder or a receiver repeats the last position when none arrives, and a falsified
 //! receiver jumps. Both leave a track that no bound of the navigation error covers.
 
-use super::neighbours::{Place, one_place};
+use super::clock::arrival;
+use super::neighbours::{Height, Place, east_north_m, one_height, one_place};
 use crate::frame::{EcefPosition, Geodetic, LatLon, ecef_from_geodetic};
 use crate::quantity::{GpsTime, Metres, OutOfDomain, Radians, Reason};
+use crate::special::float::hypot;
 
 /// What an aircraft can do. Provenance: ours; every figure is a setting.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,6 +30,8 @@ pub struct Limits {
     pub stale_after_s: f64,
     /// How long after a jump positions are not believed \[s\].
     pub settle_s: f64,
+    /// Time between two reports as it is declared \[s\]; 0 where nobody declares it.
+    pub period_s: f64,
 }
 
 /// One recorded position: `speed` is the reported speed over the ground, NaN where none is.
@@ -45,6 +49,8 @@ pub struct Report {
     pub speed_mps: f64,
     /// The larger horizontal variance that is stated, NaN where none is \[m²\].
     pub variance_m2: f64,
+    /// The height, where one is stated.
+    pub height: Option<Height>,
 }
 
 /// What was found about one position.
@@ -84,6 +90,35 @@ const STANDS_MPS: f64 = 2.0;
 /// Fastest braking of an aircraft, on a runway or in the air \[m/s2\]. Provenance: ours.
 const BRAKING_MPS2: f64 = 10.0;
 
+/// How far a position that stands may be from where it began to: noise of decimetres, and rounding \[m\]. An aircraft whose speed counts as
+/// moving needs 11 m to brake. Provenance: ours.
+const HELD_M: f64 = 5.0;
+
+/// Where and when a reported speed fell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fall {
+    /// When.
+    pub time: GpsTime,
+    /// Latitude \[rad\].
+    pub lat_rad: f64,
+    /// Longitude \[rad\].
+    pub lon_rad: f64,
+    /// The speed before it is one at which an aircraft moves for certain.
+    pub from_moving: bool,
+}
+
+impl Fall {
+    const fn at(report: &Report, from_moving: bool) -> Self {
+        Self { time: report.time, lat_rad: report.lat_rad, lon_rad: report.lon_rad, from_moving }
+    }
+
+    /// Whether a report is still where it was.
+    fn holds(&self, report: &Report, unchanged: bool) -> bool {
+        let [east, north] = east_north_m([self.lat_rad, self.lon_rad], [report.lat_rad, report.lon_rad]);
+        unchanged || (self.from_moving && hypot(east, north) <= HELD_M)
+    }
+}
+
 /// What an aircraft says of its own speed, above all while its position stays the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gone {
@@ -95,13 +130,17 @@ pub struct Gone {
     pub stood_s: f64,
     /// The least speed that braking leaves of those reported before \[m/s\]; NaN before the first.
     pub braked_mps: f64,
-    /// The reported speed fell faster than an aircraft brakes, and the position has not changed since: it is no evidence that it stands.
-    pub fell: bool,
+    /// Where the reported speed fell faster than an aircraft brakes, until the position has left: it is no evidence that the aircraft stands.
+    pub fell: Option<Fall>,
+    /// The position has changed.
+    pub moved: bool,
+    /// How much longer than by their times the reports of the first position took to arrive, at least \[s\].
+    pub crawled_s: f64,
 }
 
 impl Default for Gone {
     fn default() -> Self {
-        Self { seen: None, way_m: 0.0, stood_s: 0.0, braked_mps: f64::NAN, fell: false }
+        Self { seen: None, way_m: 0.0, stood_s: 0.0, braked_mps: f64::NAN, fell: None, moved: false, crawled_s: 0.0 }
     }
 }
 
@@ -111,6 +150,10 @@ impl Gone {
         let elapsed_s = self.seen.map_or(0.0, |seen| report.time.seconds_since(seen)).max(0.0);
         let passed_s = elapsed_s.min(limits.latency_s);
         let speed_mps = report.speed_mps;
+        self.moved |= self.seen.is_some() && !unchanged;
+        // Once it has moved, a step under stamps that crawl is beyond its reach.
+        self.crawled_s =
+            if self.seen.is_none() || self.moved { 0.0 } else { self.crawled_s + arrival(elapsed_s, limits.period_s) - elapsed_s };
         let (way_m, stood_s) = if unchanged { (self.way_m, self.stood_s) } else { (0.0, 0.0) };
         self.way_m = way_m + if unchanged && speed_mps > STANDS_MPS { speed_mps * passed_s } else { 0.0 };
         self.stood_s = stood_s + if unchanged && speed_mps <= STANDS_MPS { passed_s } else { 0.0 };
@@ -118,23 +161,31 @@ impl Gone {
         // A position that does not change leaves no way to brake on, however long that took.
         let braking_m = (self.braked_mps * self.braked_mps - speed_mps * speed_mps) / (2.0 * BRAKING_MPS2);
         let falls = speed_mps + STANDS_MPS < left_mps || (unchanged && braking_m > limits.noise_m);
-        self.fell = falls || (unchanged && self.fell);
+        let held = self.fell.filter(|fall| fall.holds(report, unchanged));
+        self.fell = held.or_else(|| falls.then(|| Fall::at(report, self.braked_mps > limits.moving_mps)));
         // f64::max prefers a number to a NaN.
         self.braked_mps = speed_mps.max(left_mps);
         self.seen = Some(report.time);
+    }
+
+    /// For how long a position that changes has stood all the same, since a speed fell that no aircraft loses so fast \[s\]; none where it may be one.
+    pub fn stands_falsely(&self, report: &Report, limits: &Limits) -> Option<f64> {
+        let fall = self.fell.filter(|fall| fall.from_moving && !within(report.time, fall.time, limits.stale_after_s))?;
+        Some(report.time.seconds_since(fall.time))
     }
 }
 
 /// An unchanged position is held where the aircraft says it moves; a parked one repeats itself rightly. A slow one's rounded position may
 /// repeat, until the aircraft would be elsewhere by its own speeds. Where no speed is reported, or one that fell faster than an aircraft
-/// brakes, a repeat may be such a one, until it lasts.
+/// brakes, a repeat may be such a one, until it lasts. A position that never was another one may stand under time stamps that crawl: it lasts as
+/// long as its reports took to arrive.
 pub fn repeated(report: &Report, since: GpsTime, gone: &Gone, limits: &Limits) -> Finding {
-    let silent = report.speed_mps.is_nan() || gone.fell;
+    let silent = report.speed_mps.is_nan() || gone.fell.is_some();
     let may_move = if silent { limits.moving_mps.is_finite() } else { report.speed_mps > limits.moving_mps };
     if limits.moving_mps.is_finite() && gone.way_m > limits.noise_m + limits.latency_s * report.speed_mps.max(0.0) {
         return Finding::Stale;
     }
-    match (may_move, within(report.time, since, limits.stale_after_s)) {
+    match (may_move, within(report.time.plus_seconds(gone.crawled_s), since, limits.stale_after_s)) {
         (true, false) => Finding::Stale,
         (true, true) if !silent => Finding::Repeated,
         _ => Finding::Plausible,
@@ -213,6 +264,8 @@ pub struct Motion {
     pub jumped: Option<GpsTime>,
     /// What it said of its own speed since.
     pub gone: Gone,
+    /// The height that the last report stated.
+    pub height: Option<Height>,
 }
 
 impl Motion {
@@ -223,7 +276,7 @@ impl Motion {
     pub fn see(&mut self, report: &Report, limits: &Limits) -> Result<Finding, OutOfDomain> {
         let here = sea_level(report)?;
         let Some((from, seen)) = self.last.zip(self.gone.seen) else {
-            (self.last, self.anchor) = (Some(*report), Some(*report));
+            (self.last, self.anchor, self.height) = (Some(*report), Some(*report), report.height);
             self.gone.step(report, false, limits);
             return Ok(Finding::Plausible);
         };
@@ -232,12 +285,20 @@ impl Motion {
         }
         let finding = if report.time == seen {
             // No vehicle is in two places, and nobody knows which of them is right.
-            if one_place(&place(&from), &place(report)) { Finding::Plausible } else { Finding::Jump }
+            let heights = self.height.as_ref().zip(report.height.as_ref());
+            let one = one_place(&place(&from), &place(report)) && heights.is_none_or(|(a, b)| one_height(a, b, limits.noise_m));
+            if one { Finding::Plausible } else { Finding::Jump }
         } else {
+            self.height = report.height;
             let unchanged = report.lat_rad == from.lat_rad && report.lon_rad == from.lon_rad;
             let stood_s = self.gone.stood_s;
             self.gone.step(report, unchanged, limits);
-            if unchanged { repeated(report, from.time, &self.gone, limits) } else { self.stepped(&from, report, &here, stood_s, limits)? }
+            if unchanged {
+                repeated(report, from.time, &self.gone, limits)
+            } else {
+                let step = self.stepped(&from, report, &here, stood_s, limits)?;
+                if step != Finding::Jump && self.gone.stands_falsely(report, limits).is_some() { Finding::Stale } else { step }
+            }
         };
         if finding == Finding::Jump {
             self.dispute(report.time);
@@ -304,11 +365,12 @@ mod tests {
         moving_mps: 15.0,
         stale_after_s: 2.0,
         settle_s: 30.0,
+        period_s: 0.0,
     };
 
     fn report(seconds: i64, north_m: f64, speed_mps: f64) -> Report {
         let time = GpsTime::from_nanoseconds(seconds * 1_000_000_000);
-        Report { time, fixed: None, lat_rad: 0.8 + north_m / 6.37e6, lon_rad: 0.1, speed_mps, variance_m2: 4.0 }
+        Report { time, fixed: None, lat_rad: 0.8 + north_m / 6.37e6, lon_rad: 0.1, speed_mps, variance_m2: 4.0, height: None }
     }
 
     fn findings(reports: &[Report], limits: &Limits) -> Vec<Finding> {
@@ -363,6 +425,28 @@ mod tests {
         assert!(findings(&stops(|_| 0.0, 1), &at_rest).iter().all(|each| *each == Finding::Plausible));
     }
 
+    /// The position of the fall with noise of decimetres, which is no repeat of bits.
+    #[test]
+    fn noise_on_a_position_that_stands_is_no_evidence_that_it_stands_either() {
+        let noisy = |amplitude_m: f64| {
+            let of =
+                |(k, each): (usize, Report)| Report { lat_rad: each.lat_rad + amplitude_m * libm::sin(12.9 * k as f64) / 6.37e6, ..each };
+            stops(|_| 0.0, 1).into_iter().enumerate().map(of).collect::<Vec<_>>()
+        };
+        for amplitude_m in [0.1, 0.5, 2.0] {
+            let verdicts = findings(&noisy(amplitude_m), &LIMITS);
+            assert!(verdicts[..102].iter().all(|each| *each == Finding::Plausible), "{amplitude_m}");
+            assert!(verdicts[103..].iter().all(|each| *each == Finding::Stale), "{amplitude_m}: {verdicts:?}");
+        }
+        // From a speed at which it need not move, and where it goes on.
+        let slow = |k: i64| report(k, 0.3 * libm::sin(12.9 * k as f64), if k < 10 { 14.9 } else { 0.0 });
+        assert!(findings(&(0..60).map(slow).collect::<Vec<_>>(), &LIMITS).iter().all(|each| *each == Finding::Plausible));
+        let taxies =
+            |k: i64| report(k, if k < 10 { 70.0 * k as f64 } else { 630.0 + 3.0 * (k - 9) as f64 }, if k < 10 { 70.0 } else { 3.0 });
+        let verdicts = findings(&(0..60).map(taxies).collect::<Vec<_>>(), &LIMITS);
+        assert!(verdicts.iter().all(|each| *each == Finding::Plausible), "{verdicts:?}");
+    }
+
     /// 70 m/s to nothing in 20 s, 25 m/s in 3 s, and minutes of the same bits.
     #[test]
     fn an_aircraft_that_braked_may_repeat_its_position() {
@@ -415,6 +499,48 @@ mod tests {
         // The next ones are not believed, whichever place they go on from.
         let after = [report(0, 0.0, 70.0), report(0, 300.0, 70.0), report(1, 70.0, 70.0), report(31, 2170.0, 70.0)];
         assert_eq!(findings(&after, &LIMITS), [Plausible, Jump, Unsettled, Plausible]);
+    }
+
+    #[test]
+    fn two_heights_of_one_time_are_a_jump_where_their_variances_do_not_explain_them() {
+        use Finding::{Jump, Plausible};
+        let at = |k, h_m, variance_m2| Report { height: Some(Height { h_m, variance_m2 }), ..report(k, 70.0 * k as f64, 70.0) };
+        let again = |up_m, variance| findings(&[at(0, 900.0, 4.0), at(1, 1000.0, variance), at(1, 1000.0 + up_m, variance)], &LIMITS)[2];
+        // As two places: 20.2 m by 4 + 4 m2, 2 m without any; and what is never a jump where no variance is stated.
+        assert_eq!([0.0, 20.0, 20.5, -3e3].map(|up_m| again(up_m, 4.0)), [Plausible, Plausible, Jump, Jump]);
+        assert_eq!([2.0, 2.1].map(|up_m| again(up_m, 0.0)), [Plausible, Jump]);
+        assert_eq!([100.0, -100.0, 101.0, 4e3].map(|up_m| again(up_m, f64::NAN)), [Plausible, Plausible, Jump, Jump]);
+        // Of different times, of a position that stands, and beside no height.
+        let stands = |k, h_m| Report { height: Some(Height { h_m, variance_m2: 1.0 }), ..report(k, 0.0, 0.0) };
+        assert_eq!(findings(&[stands(0, 0.0), stands(1, 500.0), stands(2, 1000.0), stands(2, 1001.0)], &LIMITS), [Plausible; 4]);
+        assert_eq!(findings(&[stands(0, 0.0), stands(1, 500.0), stands(1, 0.0)], &LIMITS)[2], Jump);
+        assert_eq!(findings(&[stands(0, 0.0), report(0, 0.0, 0.0), stands(1, 3e3), report(1, 0.0, 0.0)], &LIMITS), [Plausible; 4]);
+    }
+
+    #[test]
+    fn a_position_that_stands_under_time_stamps_that_crawl_lasts_as_long_as_its_reports() {
+        use Finding::{Plausible, Repeated, Stale};
+        let crawls = |speed| move |k: i64| Report { time: GpsTime::from_nanoseconds(k * 1_000_000), ..report(0, 0.0, speed) };
+        let declared = Limits { period_s: 1.0, ..LIMITS };
+        let silent: Vec<Report> = (0..60).map(crawls(f64::NAN)).collect();
+        assert_eq!(findings(&silent, &declared)[..4], [Plausible, Plausible, Plausible, Stale]);
+        assert!(findings(&silent, &declared)[3..].iter().all(|each| *each == Stale));
+        assert_eq!(findings(&(0..5).map(crawls(70.0)).collect::<Vec<_>>(), &declared), [Plausible, Repeated, Repeated, Stale, Stale]);
+        assert_eq!(findings(&(0..60).map(crawls(0.0)).collect::<Vec<_>>(), &declared), [Plausible; 60]);
+        // Where nobody declares how often reports come, a fast table repeats its position.
+        assert_eq!(findings(&silent, &LIMITS), [Plausible; 60]);
+        // Reports at half the period or more are no crawl; nor is a position that repeats between two others.
+        let half = |k: i64| Report { time: GpsTime::from_nanoseconds(k * 500_000_000), ..report(0, 0.0, f64::NAN) };
+        assert_eq!(
+            findings(&(0..6).map(half).collect::<Vec<_>>(), &declared),
+            [Plausible, Plausible, Plausible, Plausible, Plausible, Stale]
+        );
+        let fast =
+            |k: i64| Report { time: GpsTime::from_nanoseconds(k * 100_000_000), ..report(0, 7.0 * (1 + k.max(0) / 10) as f64, f64::NAN) };
+        let moves: Vec<Report> = core::iter::once(Report { time: GpsTime::from_nanoseconds(-1_000_000_000), ..report(0, 0.0, f64::NAN) })
+            .chain((0..60).map(fast))
+            .collect();
+        assert_eq!(findings(&moves, &declared), [Plausible; 61]);
     }
 
     #[test]

@@ -39,6 +39,21 @@ pub struct Place {
     pub variance_m2: f64,
 }
 
+impl Place {
+    const fn at(&self) -> [f64; 2] {
+        [self.lat_rad, self.lon_rad]
+    }
+}
+
+/// A height and its variance, NaN where none is stated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Height {
+    /// Above the ellipsoid \[m\].
+    pub h_m: f64,
+    /// Its variance \[m²\].
+    pub variance_m2: f64,
+}
+
 /// How far a position stands from the line between its neighbours.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Apart {
@@ -57,7 +72,7 @@ impl Apart {
         if !(before_s > 0.0 && after_s > 0.0) {
             return None;
         }
-        let (way, step) = (east_north_m(a, c), east_north_m(a, b));
+        let (way, step) = (east_north_m(a.at(), c.at()), east_north_m(a.at(), b.at()));
         let whole_s = before_s + after_s;
         let share = before_s / whole_s;
         let away = [step[0] - share * way[0], step[1] - share * way[1]];
@@ -95,18 +110,26 @@ impl Apart {
 
 /// Whether two positions of one time are one, by their covariances and their digits.
 pub fn one_place(a: &Place, b: &Place) -> bool {
-    let [east, north] = east_north_m(a, b);
-    let unexplained_m = (hypot(east, north) - ROUNDING_M).max(0.0);
+    let [east, north] = east_north_m(a.at(), b.at());
     // A position without a variance explains nothing more.
-    let sigma_m = sqrt(a.variance_m2 + b.variance_m2);
-    let explained = exp(-0.5 * (unexplained_m / sigma_m) * (unexplained_m / sigma_m)) >= RISK;
-    unexplained_m <= 0.0 || explained
+    explained(hypot(east, north), a.variance_m2 + b.variance_m2)
+}
+
+/// Whether two heights of one time are one, in the same way; without a variance those are that differ by no more than `noise_m`.
+pub fn one_height(a: &Height, b: &Height, noise_m: f64) -> bool {
+    let (apart_m, variance_m2) = ((a.h_m - b.h_m).abs(), a.variance_m2 + b.variance_m2);
+    if variance_m2.is_nan() { apart_m <= noise_m } else { explained(apart_m, variance_m2) }
+}
+
+fn explained(apart_m: f64, variance_m2: f64) -> bool {
+    let (unexplained_m, sigma_m) = ((apart_m - ROUNDING_M).max(0.0), sqrt(variance_m2));
+    unexplained_m <= 0.0 || exp(-0.5 * (unexplained_m / sigma_m) * (unexplained_m / sigma_m)) >= RISK
 }
 
 /// The way from one place to another on a sphere; a meridian and the same one a turn further are one.
-fn east_north_m(from: &Place, to: &Place) -> [f64; 2] {
-    let east = 2.0 * EARTH_RADIUS_M * cos(from.lat_rad) * sin(0.5 * (to.lon_rad - from.lon_rad));
-    [east, EARTH_RADIUS_M * (to.lat_rad - from.lat_rad)]
+pub(super) fn east_north_m([from_lat, from_lon]: [f64; 2], [lat, lon]: [f64; 2]) -> [f64; 2] {
+    let east = 2.0 * EARTH_RADIUS_M * cos(from_lat) * sin(0.5 * (lon - from_lon));
+    [east, EARTH_RADIUS_M * (lat - from_lat)]
 }
 
 /// The last two positions of a track whose reports arrive.

@@ -3,7 +3,7 @@
 use super::Decoded;
 use crate::codec::{Damaged, Reader, Writer};
 use crate::counters::Refused;
-use crate::position::{Position, TrackId};
+use crate::position::{Position, Shown, TrackId};
 use navbound_core::quantity::{Reason, Status};
 use navbound_formats::receiver::position::{Dated, Decoder, Ends, Item, Kind, Message, OfDay, State};
 
@@ -13,7 +13,8 @@ const MOST_MESSAGES: u32 = 16;
 /// A report, or why there is none; nothing for a date, or for an accuracy alone.
 pub(super) fn decoded(item: Item, track: TrackId) -> Option<Decoded> {
     match item {
-        Item::Dated(_) | Item::Unpaired(_) => None,
+        Item::Dated(_) => None,
+        Item::Unpaired(_) => Some(Err(Refused::AccuracyAlone)),
         Item::Malformed(_) => Some(Err(Refused::ShortMessage)),
         Item::Position(position) => {
             let Some(time) = position.time else { return Some(Err(Refused::Undated)) };
@@ -27,6 +28,7 @@ pub(super) fn decoded(item: Item, track: TrackId) -> Option<Decoded> {
                 hpl_m: position.hpl_m,
                 status: if usable { Status::Ok } else { Status::NotAvailable },
                 reason: (!usable).then_some(Reason::Reported),
+                shown: Shown { n_sv: position.n_sv.map(f64::from), ..Shown::default() },
                 ..Position::new(track, time)
             }))
         }

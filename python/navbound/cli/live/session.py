@@ -390,10 +390,14 @@ def _ended(session: Session, settings: Settings, *, json: bool) -> None:
     counters = session.counters()
     if session.n_epochs:
         tables.write(session.folder, time_to_alert_s=settings.time_to_alert_s)
-    refused = ", ".join(f"{n} {name.removeprefix('refused_')}" for name, n in counters.items() if name.startswith("refused_") and n)
+    refused, unusable = (
+        ", ".join(f"{n:g} {name.removeprefix(of)}" for name, n in counters.items() if name.startswith(of) and n)
+        for of in ("refused_", "unusable_")
+    )
+    repeated = sum(counters.get(name, 0) for name in ("n_waiting_duplicate", "n_duplicate"))
     sentence = (
         f"{session.n_epochs} epochs of {session.n_tracks} tracks, {session.n_transitions} transitions; "
-        f"refused: {refused or 'nothing'}; session in {session.folder}"
+        f"refused: {refused or 'nothing'}; positions not used: {unusable or 'none'}; repeated times: {repeated:g}; session in {session.folder}"
     )
     if not session.n_epochs:
         sentence += f"; no epoch was judged: nothing of the source is read as {settings.format}; --format names what it sends"

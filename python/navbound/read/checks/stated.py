@@ -103,7 +103,7 @@ def of_satellites(rows: pl.DataFrame) -> pl.DataFrame:
     """Positions on fewer satellites than determine one are kept by something else, where the recording states no status of its own."""
     if "n_sv" not in rows.columns or "status" in rows.columns:
         return rows
-    few = (rows["n_sv"] < _core.LEAST_SATELLITES).fill_null(value=False)
+    few = (rows["n_sv"] < _core.DETERMINING_SATELLITES).fill_null(value=False)
     if not few.any():
         return rows
     rows = rows.with_columns(pl.lit("ok").alias("status"))
@@ -112,7 +112,7 @@ def of_satellites(rows: pl.DataFrame) -> pl.DataFrame:
 
 def of_counted_satellites(rows: pl.DataFrame) -> tuple[pl.DataFrame, int]:
     """Positions of a receiver's log beside a count of satellites that determines none: which of the two is wrong nobody knows."""
-    few = (rows["n_sv"] < _core.LEAST_SATELLITES).fill_null(value=False) if "n_sv" in rows.columns else pl.Series([False])
+    few = (rows["n_sv"] < _core.DETERMINING_SATELLITES).fill_null(value=False) if "n_sv" in rows.columns else pl.Series([False])
     if not few.any():
         return rows, 0
     rows = rows.with_columns(pl.lit("ok").alias("status"))

@@ -1,0 +1,100 @@
+//! Places that nobody was at, heights, counts of satellites, and the count of what was not used.
+
+use super::*;
+
+/// Epochs of lines of one track that flies 64 m/s, which are judged alone and from a file.
+fn from_file(lines: impl Iterator<Item = String>) -> (Vec<EpochOut>, Lane) {
+    let base = settings();
+    let judge = judge::Settings { method: Alerting::of("anp-circle").unwrap(), ..base.judge };
+    let (mut lane, mut all) = (Lane::new(Settings { judge, ..base }).unwrap(), Vec::new());
+    for text in lines {
+        lane.step(&Input::Chunk { arrival: None, bytes: text.as_bytes() }, &mut all);
+    }
+    lane.step(&Input::End { arrival: None }, &mut all);
+    (epochs_of(&all, "d"), lane)
+}
+
+fn flies(k: u32) -> f64 {
+    0.5 + 1e-5 * f64::from(k)
+}
+
+const SPEED: &str = ",\"ground_speed_mps\":64.0";
+
+#[test]
+fn latitude_0_longitude_0_is_no_position_and_moves_nothing() {
+    for zeros in [0..1, 0..4, 10..11, 10..14] {
+        let of = |k: u32| {
+            let place = if zeros.contains(&k) {
+                ",\"est_lat_rad\":0.0,\"est_lon_rad\":0.0,\"sigma_m\":10.0".to_owned()
+            } else {
+                placed(flies(k), SPEED)
+            };
+            line("d", f64::from(k), &place)
+        };
+        let (epochs, _) = from_file((0..30).map(of));
+        for (k, epoch) in (0..).zip(&epochs) {
+            let expected = if zeros.contains(&k) { (Status::NotAvailable, Some(Reason::Reported)) } else { (Status::Ok, None) };
+            assert_eq!((epoch.status, epoch.reason), expected, "{k} of {zeros:?}");
+        }
+    }
+}
+
+#[test]
+fn two_heights_of_one_instant_contradict_each_other() {
+    for (again_m, contradicts) in [(100.0, false), (150.0, false), (300.0, true), (4000.0, true)] {
+        let second = |k: u32| placed(flies(k), SPEED).replace("\"est_h_m\":100.0", &format!("\"est_h_m\":{again_m}"));
+        let twice = |k: u32| if k == 10 { line("d", 10.0, &second(k)) } else { String::new() };
+        let (epochs, _) = from_file((0..50).map(|k| line("d", f64::from(k), &placed(flies(k), SPEED)) + &twice(k)));
+        assert!(epochs[..10].iter().chain(&epochs[42..]).all(|e| e.status == Status::Ok), "{again_m}");
+        assert_eq!(epochs[12..41].iter().all(|e| e.reason == Some(Reason::PositionNotSettled)), contradicts, "{again_m}");
+        assert_eq!(epochs[11..41].iter().all(|e| e.alert == rnp::Alert::Unavailable), contradicts, "{again_m}");
+    }
+}
+
+#[test]
+fn a_position_that_stands_from_the_first_record_under_stamps_that_crawl_is_stale() {
+    let of = |k: u32, speed: &str| {
+        let text = placed(0.5, &format!("{speed},\"fte_m\":0.0"));
+        format!("{{\"v\":1,\"track\":\"d\",\"time_ns\":{}{text}}}\n", T0_NS + i64::from(k) * 1_000_000)
+    };
+    for (speed, reason) in [("", None), (SPEED, Some(Reason::PositionHeld))] {
+        let (epochs, _) = from_file((0..60).map(|k| of(k, speed)));
+        assert_eq!(
+            epochs.iter().map(|e| e.reason).collect::<Vec<_>>()[..4],
+            [None, reason, reason, Some(Reason::PositionStale)],
+            "{speed}"
+        );
+        assert!(epochs[3..].iter().all(|e| e.reason == Some(Reason::PositionStale)), "{speed}");
+        assert!(epochs[4..].iter().all(|e| e.alert == rnp::Alert::Unavailable), "{speed}");
+    }
+}
+
+#[test]
+fn fewer_satellites_than_determine_a_position_are_degraded_whatever_the_source_says() {
+    for (n_sv, few) in [("0", true), ("3", true), ("4", false), ("9", false), ("null", false)] {
+        for status in ["", ",\"status\":\"ok\""] {
+            let (epochs, _) = from_file((0..9).map(|k| line("d", f64::from(k), &placed(flies(k), &format!(",\"n_sv\":{n_sv}{status}")))));
+            let expected = if few { (Status::Degraded, Some(Reason::FewSatellites)) } else { (Status::Ok, None) };
+            assert!(epochs.iter().all(|e| (e.status, e.reason) == expected), "{n_sv}");
+        }
+    }
+    // What its source says is worse stays.
+    let (epochs, _) = from_file((0..3).map(|k| line("d", f64::from(k), &placed(flies(k), ",\"n_sv\":0,\"status\":\"not_available\""))));
+    assert!(epochs.iter().all(|e| (e.status, e.reason) == (Status::NotAvailable, Some(Reason::Reported))));
+}
+
+#[test]
+fn positions_that_were_not_used_are_counted_by_their_reason() {
+    let of = |k: u32| match k {
+        5..8 => line("d", f64::from(k), ",\"est_lat_rad\":0.0,\"est_lon_rad\":0.0,\"sigma_m\":10.0"),
+        10 => line("d", f64::from(k), &placed(flies(k), "").replace(",\"sigma_m\":10.0", "")),
+        _ => line("d", f64::from(k), &placed(flies(k), SPEED)),
+    };
+    let (epochs, lane) = from_file((0..30).map(of));
+    let counted = |lane: &Lane| lane.counters().named().into_iter().filter(|(name, _)| name.starts_with("unusable_")).collect::<Vec<_>>();
+    let expected = [("unusable_no_covariance", 1), ("unusable_reported", 3)].map(|(name, n)| (name.to_owned(), n));
+    assert_eq!(counted(&lane), expected);
+    assert_eq!(epochs.iter().filter(|e| !e.status.usable()).count(), 4);
+    let restored = Lane::restore(lane.settings.clone(), &lane.snapshot(0, 0)).unwrap().0;
+    assert_eq!(counted(&restored), expected);
+}
