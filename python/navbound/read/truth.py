@@ -116,7 +116,7 @@ def at_fixed_point(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, Tr
     """Form the navigation error of a receiver that does not move; of whole tracks."""
     from navbound import gnss  # noqa: PLC0415  (only with a fixed point)
 
-    place = gnss.geodetic(truth.ecef_m)
+    place = gnss.geodetic(np.asarray(truth.ecef_m))
     names = ("truth_lat_rad", "truth_lon_rad", "truth_h_m")
     return with_error(epochs.with_columns(pl.lit(float(value)).alias(name) for name, value in zip(names, place, strict=True)))
 

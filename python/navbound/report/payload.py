@@ -264,8 +264,8 @@ def _ends(epochs: Table, summary: Summary) -> NDArray[np.float64]:
     for piece in pieces(epochs, ["track", "est_lat_rad", "est_lon_rad"]):
         known = piece.drop_nulls().filter(pl.all_horizontal(pl.selectors.float().is_finite()))
         ends = known.group_by("track", maintain_order=True)
-        last |= {track: place for track, *place in ends.last().iter_rows()}
-        first = {track: place for track, *place in ends.first().iter_rows()} | first
+        last |= {track: tuple(place) for track, *place in ends.last().iter_rows()}
+        first = {track: tuple(place) for track, *place in ends.first().iter_rows()} | first
     return np.array([*first.values(), *last.values()]).reshape(-1, 2)
 
 

@@ -135,7 +135,7 @@ class Sums:
             self.phases.setdefault((phase, limit), Group()).add(group)
         if "p_exceed_2rnp" in margins.columns:
             for (phase, limit), rows in margins.select("phase", "rnp_m", "p_exceed_2rnp").group_by("phase", "rnp_m", maintain_order=True):
-                self._risks.setdefault((phase, limit), []).append(rows["p_exceed_2rnp"])  # type: ignore[arg-type]
+                self._risks.setdefault((phase, limit), []).append(rows["p_exceed_2rnp"])
         at = self._onsets.join(margins.select("track", "time_ns", "phase", "rnp_m"), on=["track", "time_ns"])
         self.alerts.update({(p, limit, kind): n for p, limit, kind, n in at.group_by("phase", "rnp_m", "kind").len().iter_rows()})
 

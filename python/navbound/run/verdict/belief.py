@@ -313,8 +313,9 @@ def _decimals_of_copies(epochs: _Usable) -> int | None:
 
 def _in_degrees(epochs: pl.DataFrame) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Latitude and longitude of estimate and truth, shape (2, 2, n), and where all are known."""
-    degrees = np.degrees([column_of(epochs, name) for name in _DEGREES]).reshape(2, 2, -1)
-    return degrees, np.isfinite(degrees).all(axis=(0, 1))
+    degrees: NDArray[np.float64] = np.degrees([column_of(epochs, name) for name in _DEGREES]).reshape(2, 2, -1)
+    known: NDArray[np.bool_] = np.asarray(np.isfinite(degrees).all(axis=(0, 1)))
+    return degrees, known
 
 
 def _rounded_copies(epochs: pl.DataFrame, decimals: int) -> NDArray[np.bool_]:
