@@ -140,7 +140,8 @@ impl Grid {
         if latitude > 85.0 {
             return self.cap(at);
         }
-        if latitude > 75.0 {
+        // The row at 75 degrees has no cell of its own size towards the pole.
+        if latitude >= 75.0 {
             return self.high(at);
         }
         let small_width = if latitude > 60.0 { 10 } else { 5 };
@@ -451,6 +452,29 @@ mod tests {
                 let lat = sign * (85.1 + 0.5 * f64::from(k));
                 let vertical = grid.vertical(at(lat, lon)).unwrap();
                 assert!((vertical.delay_m - around_the_pole(lat, lon)).abs() < 1e-12, "{lat} {lon}");
+            }
+        }
+    }
+
+    /// At a limit of two bands both say the row of the grid that stands there, and at 85 degrees it is that of the band below: its points stand
+    /// thirty degrees apart, those of the cap ninety.
+    #[test]
+    fn at_the_limits_of_the_bands_the_row_of_the_grid_serves() {
+        let grid = world(rough);
+        for step in 0..=3590 {
+            let lon = -179.5 + 0.1 * f64::from(step);
+            for (row, apart) in [(60.0, 5.0), (75.0, 10.0), (85.0, 30.0)] {
+                for lat in [row, -row] {
+                    let expected = if row == 85.0 {
+                        between_75_and_85(lat, lon)
+                    } else {
+                        let west = apart * (lon / apart).floor();
+                        let x = (lon - west) / apart;
+                        (1.0 - x) * rough(lat, wrapped(west)) + x * rough(lat, wrapped(west + apart))
+                    };
+                    let vertical = grid.vertical(at(lat, lon)).map(|v| v.delay_m);
+                    assert!(vertical.is_some_and(|v| (v - expected).abs() < 1e-12), "{lat} {lon}: {vertical:?} {expected}");
+                }
             }
         }
     }
