@@ -96,4 +96,42 @@ mod tests {
         // Of no time: over, always.
         assert!(read(0.0, true, 0.0) && !read(0.0, false, 0.0));
     }
+
+    /// Every way to be in and out for ten seconds, counted in whole halves of a second: three seconds fill it, six empty it.
+    #[test]
+    fn a_wait_is_over_from_full_to_empty() {
+        for pattern in 0..1_u32 << 10 {
+            let mut wait = Wait::new(3.0, 6.0);
+            let (mut halves, mut over) = (0_i32, false);
+            for second in 0..10 {
+                let inside = pattern >> second & 1 == 1;
+                wait.pass(1e9, inside);
+                halves = if inside { halves - 1 } else { halves + 2 }.clamp(0, 6);
+                over = match halves {
+                    6 => true,
+                    0 => false,
+                    _ => over,
+                };
+                let left_s = if over { 0.0 } else { 0.5 * f64::from(6 - halves) };
+                assert_eq!((wait.is_over(), wait.is_empty(), wait.left_s()), (over, halves == 0, left_s), "{pattern:b} {second}");
+            }
+            wait.restart();
+            assert_eq!((wait.is_over(), wait.is_empty(), wait.left_s()), (false, true, 3.0));
+        }
+    }
+
+    /// Where nothing is waited for it is over, always; where calm is not waited for an instant inside empties it.
+    #[test]
+    fn a_wait_of_no_time_is_over_and_calm_of_no_time_empties() {
+        let mut wait = Wait::new(0.0, 10.0);
+        for inside in [true, false, true, true] {
+            wait.pass(1e9, inside);
+            assert!(wait.is_over() && wait.is_empty() && wait.left_s() == 0.0);
+        }
+        let mut wait = Wait::new(3.0, 0.0);
+        wait.pass(3e9, false);
+        assert!(wait.is_over());
+        wait.pass(1.0, true);
+        assert!(wait.is_empty() && !wait.is_over() && wait.left_s() == 3.0);
+    }
 }

@@ -139,4 +139,35 @@ mod tests {
         blind.velocity = None;
         assert!(course.led(&blind, &looked(1, 0.0), true).is_none());
     }
+
+    /// Velocities of unlike variances: a quarter of the mean of both traces a step, or the whole of the first where none is measured.
+    #[test]
+    fn the_variance_of_a_way_is_that_of_its_velocities() {
+        let with = |second: u32, trace: [f64; 3]| {
+            let mut looked = looked(second, 0.0);
+            looked.velocity.as_mut().unwrap().covariance = Matrix3::from_diagonal(&Vector3::from(trace));
+            looked
+        };
+        let (first, second) = (with(0, [3.0, 12.0, 30.0]), with(2, [6.0, 0.3, 2.7]));
+        let course = Course::at(&first);
+        // 45 / 3 and 9 / 3 m2/s2 over two seconds; a change of acceleration of 3 m/s3 moves by 3 x 8 / 12 m.
+        let led = course.led(&first, &second, true).unwrap();
+        assert!((led.moved_m2 - (0.25 * 18.0 * 4.0 + 4.0)).abs() < 1e-12, "{}", led.moved_m2);
+        // An acceleration of 3 m/s2 moves by at most 3 x 4 m.
+        let led = course.led(&first, &second, false).unwrap();
+        assert!((led.moved_m2 - (15.0 * 4.0 + 144.0)).abs() < 1e-12, "{}", led.moved_m2);
+    }
+
+    #[test]
+    fn the_longest_step_leads_and_one_of_no_time_does_not() {
+        let first = looked(0, 0.0);
+        let later = |seconds: f64| {
+            let mut looked = looked(0, 0.0);
+            looked.snapshot.time = first.snapshot.time.plus_seconds(seconds);
+            looked
+        };
+        for (seconds, leads) in [(STEP_MOST_S, true), (STEP_MOST_S + 1e-3, false), (1e-3, true), (0.0, false), (-1.0, false)] {
+            assert_eq!(Course::at(&first).led(&first, &later(seconds), true).is_some(), leads, "{seconds}");
+        }
+    }
 }

@@ -145,7 +145,10 @@ mod tests {
             }
         }
         let first = snapshot(0.0, 0.0, 4.0);
-        assert!(between(&first, &snapshot(STEP_MOST_S + 0.1, 0.0, 4.0)).is_none());
+        assert!(
+            between(&first, &snapshot(STEP_MOST_S, 0.0, 4.0)).is_some()
+                && between(&first, &snapshot(STEP_MOST_S + 1e-3, 0.0, 4.0)).is_none()
+        );
         assert!(between(&first, &first).is_none() && between(&snapshot(1.0, 0.0, 4.0), &first).is_none());
     }
 

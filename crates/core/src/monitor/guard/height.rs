@@ -150,4 +150,49 @@ mod tests {
         assert_eq!(height.references.iter().flatten().count(), REFERENCES);
         assert_eq!(oldest.seconds_since(GpsTime::default()), 19_900.0 - 53.0 * APART_S);
     }
+
+    /// Every difference that agreed, kept and tested one by one: the word is that of the smallest chance, times their number.
+    #[test]
+    fn a_height_is_tested_against_every_difference_that_is_remembered() {
+        let mut state = 11_u64;
+        let mut draw = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let (mut height, mut kept) = (Height::default(), Vec::<(f64, f64, f64)>::new());
+        let (mut second, mut reported) = (0.0, [0; 3]);
+        for _ in 0..600 {
+            second += [10.0, 50.0, 100.0][(3.0 * draw()) as usize];
+            let bias_m = 60.0 + 40.0 * draw();
+            let apart_m = 24.0 * (draw() - 0.5) + if draw() < 0.3 { 700.0 * (draw() - 0.5) } else { 0.0 };
+            // 5 m of noise and 3 m of the snapshot.
+            let both = |variance: f64, apart: f64| 2.0 * tail(apart.abs() / variance.sqrt());
+            let mut least = both(bias_m * bias_m + 34.0, apart_m);
+            for (s, apart, bias) in &kept {
+                let left = (-(second - s) / 1e5).exp();
+                let variance = (bias_m * bias_m - bias * bias).abs() + 2.0 * bias_m * bias * (1.0 - left) + 68.0;
+                least = least.min(kept.len() as f64 * both(variance, apart_m - apart));
+            }
+            let expected = if least >= 1e-3 {
+                Testimony::Agrees
+            } else if least >= 1e-7 {
+                Testimony::Doubts
+            } else {
+                Testimony::Contradicts
+            };
+            assert_eq!(height.hear(&baro(1000.0 + apart_m, bias_m), &at(second, 1000.0)), expected, "{second}: {least}");
+            reported[match expected {
+                Testimony::Agrees => 0,
+                Testimony::Doubts => 1,
+                _ => 2,
+            }] += 1;
+            if expected == Testimony::Agrees && kept.last().is_none_or(|(s, ..)| second - s >= 100.0) {
+                kept.push((second, apart_m, bias_m));
+                if kept.len() > 54 {
+                    kept.remove(0);
+                }
+            }
+        }
+        assert!(reported.iter().all(|n| *n > 10) && kept.len() == 54, "{reported:?} {}", kept.len());
+    }
 }

@@ -97,4 +97,39 @@ mod tests {
         assert!((h - 50.0).abs() < 1e-3 && (v - 7.0).abs() < 1e-3, "{h} {v}");
         assert!(apart(&snapshot, &EcefPosition::from_vector(Vector3::new(f64::NAN, 0.0, 0.0))).is_none());
     }
+
+    /// The bound of the other reading: the distance, and the quantiles of a fault-free level of the other's own deviations, the longest
+    /// horizontal one by the roots of its two by two.
+    #[test]
+    fn the_bound_of_the_other_reading_is_its_distance_and_its_own_deviations() {
+        use super::super::{Envelope, Settings};
+        use crate::bound::araim::single::Requirement;
+        use crate::frame::ecef_from_geodetic;
+        use crate::solution::ins::{Attitude, Fusion, ImuModel, NavState, SensorNoise, Settings as FilterSettings, StartSigma};
+        let point = LatLon::new(Radians::new(0.7), Radians::new(2.0)).unwrap();
+        let place = Geodetic { point, height: Metres::new(1000.0) };
+        let noise = SensorNoise { white: 1e-3, bias: 1e-3, bias_time_s: 3600.0 };
+        let sigma = StartSigma { position: [Metres::new(5.0); 3], velocity_mps: 0.1, attitude: [Radians::new(1e-3); 3] };
+        let level = Attitude { roll: Radians::new(0.0), pitch: Radians::new(0.0), heading: Radians::new(0.0) };
+        let start = NavState::new(GpsTime::default(), &place, Vector3::zeros(), &level).unwrap();
+        let settings = FilterSettings::of(ImuModel { gyroscope: noise, accelerometer: noise });
+        let mut filter = Fusion::new(start, &sigma, settings).unwrap();
+        let solution = filter.solution(GpsTime::default()).unwrap();
+        let wide = Matrix3::new(9.0, 6.0, 1.0, 6.0, 25.0, 2.0, 1.0, 2.0, 49.0);
+        let other = Solution { covariance: Covariance::claim_symmetric(wide), ..solution };
+        let requirement = Requirement::RAIM;
+        let settings =
+            Settings { envelope: Envelope::NONE, requirement, age_sigma_s: 0.1, gap_most_s: 0.5, age_most_s: 2.0, restart_after_s: 5.0 };
+        let guard = Guard::new(settings).unwrap();
+        let snapshot = Snapshot::solved(GpsTime::default(), place, Covariance::claim_symmetric(Matrix3::identity()));
+        let antenna = ecef_from_geodetic(&place.moved(&Displacement::<Enu>::from_vector(Vector3::new(30.0, -40.0, -7.0))).unwrap());
+        let [h, v] = guard.bound_of(&snapshot, &other, &antenna).unwrap();
+        let q = requirement.fault_free.q();
+        // (9 + 25) / 2 and the root of 8^2 + 6^2: variances 7 and 27. Two degrees of freedom in closed form, one by both tails.
+        let horizontal = 50.0 + (-2.0 * q.ln()).sqrt() * 27.0_f64.sqrt();
+        let vertical = 7.0 + crate::special::two_sided_factor(q) * 7.0;
+        // Fifty metres of a sphere of 6400 km bend by 0.2 mm.
+        assert!((h - horizontal).abs() < 1e-3 && (v - vertical).abs() < 1e-3, "{h} {horizontal} {v} {vertical}");
+        assert!(guard.bound_of(&snapshot, &other, &EcefPosition::from_vector(Vector3::repeat(f64::NAN))).is_none());
+    }
 }

@@ -17,6 +17,8 @@ mod shares;
 mod stations;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod times_tests;
 mod witnesses;
 
 pub use contradiction::{AGREED_S, Contradiction, Tests};

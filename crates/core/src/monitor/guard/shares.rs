@@ -2,7 +2,7 @@
 
 use crate::monitor::judgement::{Gating, Tuning};
 use crate::quantity::GpsTime;
-use crate::solution::ins::{Block, Fusion, Kind};
+use crate::solution::ins::{Block, Fusion, Innovations, Kind};
 use crate::special::float::exp;
 
 /// Time over which a share is taken \[s\]. Provenance: inferred.
@@ -24,11 +24,14 @@ const INSTANT_MOST: f64 = 10.0;
 /// Families of measurements that keep a position. A single station that is left out is a culprit with a name, a blocked altimeter another.
 const FAMILIES: [&[Kind]; 3] = [&[Kind::Range], &[Kind::RangeRate], &[Kind::FixPosition, Kind::FixVelocity]];
 
+/// Scalars used and rejected, of each family.
+type Totals = [[u64; 2]; FAMILIES.len()];
+
 /// Counts second by second.
 #[derive(Debug, Clone, Copy)]
 pub struct Shares {
-    counted: [[u64; 2]; FAMILIES.len()],
-    window: [[[u64; 2]; FAMILIES.len()]; WINDOW],
+    counted: Totals,
+    window: [Totals; WINDOW],
     next: usize,
     since: Option<GpsTime>,
     stepped: Option<GpsTime>,
@@ -59,10 +62,16 @@ impl Shares {
 
     /// A second has passed.
     pub fn second(&mut self, now: GpsTime, filter: &Fusion) -> Gating {
+        let of = |family: &[Kind], count: fn(&Innovations) -> u64| family.iter().map(|kind| count(filter.innovations(*kind))).sum();
+        self.say(now, FAMILIES.map(|family| [of(family, |i| i.n_used), of(family, |i| i.n_gated)]))
+    }
+
+    /// The same of the scalars of each family that a filter has used and rejected since it started.
+    fn say(&mut self, now: GpsTime, total: Totals) -> Gating {
         // Results may be more frequent: what was counted stands until the second is over.
         if self.stepped.is_none_or(|t| now.seconds_since(t) >= STEP_S) {
             self.stepped = Some(now);
-            self.count(filter);
+            self.count(total);
         }
         if !self.excess {
             self.since = None;
@@ -71,11 +80,8 @@ impl Shares {
         Gating::Excess { for_s: now.seconds_since(*self.since.get_or_insert(now)) }
     }
 
-    fn count(&mut self, filter: &Fusion) {
-        for (k, family) in FAMILIES.iter().enumerate() {
-            let of =
-                |count: fn(&crate::solution::ins::Innovations) -> u64| family.iter().map(|kind| count(filter.innovations(*kind))).sum();
-            let total: [u64; 2] = [of(|i| i.n_used), of(|i| i.n_gated)];
+    fn count(&mut self, totals: Totals) {
+        for (k, total) in totals.into_iter().enumerate() {
             // A filter that started anew counts from nothing.
             self.window[self.next][k] =
                 [0, 1].map(|j| if total[j] >= self.counted[k][j] { total[j] - self.counted[k][j] } else { total[j] });
@@ -158,5 +164,96 @@ mod tests {
         }
         // One instant counts no more than ten.
         assert!(tunings(&[&[1.0; 30][..], &[1e9], &[1.0; 30]].concat()).iter().all(|t| matches!(t, Tuning::AsDeclared)));
+    }
+
+    /// What is said of each second by all that was used and rejected in the ten seconds until then, each family by itself.
+    #[test]
+    fn an_excess_is_a_share_of_the_last_ten_seconds() {
+        let mut state = 9_u64;
+        let mut draw = |most: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % most
+        };
+        let (mut shares, mut total, mut history) = (Shares::new(), [[0_u64; 2]; 3], Vec::new());
+        let (mut began, mut excesses) = (None, 0);
+        for second in 0..4000_u32 {
+            // Busy and quiet times, and now and then a filter that starts anew.
+            let busy = [1, 2, 6][second as usize / 37 % 3];
+            let gated = [1, 3, 1, 2][second as usize / 23 % 4];
+            if second % 501 == 500 {
+                total = [[0; 2]; 3];
+            }
+            let passed: [[u64; 2]; 3] = core::array::from_fn(|_| [draw(busy), draw(gated)]);
+            for k in 0..3 {
+                (0..2).for_each(|j| total[k][j] += passed[k][j]);
+            }
+            // A filter that starts anew and soon has as many again as before is not seen; here it never has.
+            history.push(passed);
+            let last = &history[history.len().saturating_sub(10)..];
+            let excess = (0..3).any(|k| {
+                let [used, gated] = [0, 1].map(|j| last.iter().map(|passed| passed[k][j]).sum::<u64>());
+                // A fifth of twenty and more, half of fewer.
+                if used + gated >= 20 { 5 * gated > used + gated } else { 2 * gated > used + gated }
+            });
+            began = excess.then(|| began.unwrap_or(second));
+            let reported = shares.say(at(f64::from(second)), total);
+            let expected = began.map_or(Gating::Usual, |s| Gating::Excess { for_s: f64::from(second - s) });
+            assert_eq!(reported, expected, "{second}");
+            excesses += u32::from(excess);
+        }
+        assert!((400..3600).contains(&excesses), "{excesses}");
+    }
+
+    /// Nineteen and twenty scalars, and shares of exactly a half and a fifth.
+    #[test]
+    fn a_share_that_is_just_reached_is_no_excess() {
+        let reported = |used: u64, gated: u64| {
+            let alone: [Gating; 3] = core::array::from_fn(|k| {
+                let mut total = [[0; 2]; 3];
+                total[k] = [used, gated];
+                Shares::new().say(at(0.0), total)
+            });
+            assert!(alone.iter().all(|g| *g == alone[0]), "each family counts alike");
+            alone[0] != Gating::Usual
+        };
+        assert!(!reported(0, 0) && !reported(16, 4) && reported(15, 5) && !reported(80, 20) && reported(79, 21));
+        assert!(!reported(9, 9) && !reported(10, 9) && reported(9, 10) && !reported(15, 4) && !reported(1, 1) && reported(0, 1));
+    }
+
+    /// Results may come faster than the seconds: what was counted stands until 0.95 s have passed.
+    #[test]
+    fn a_second_is_counted_once() {
+        let mut shares = Shares::new();
+        let only_gated = |n: u64| [[0, n], [0; 2], [0; 2]];
+        assert_eq!(shares.say(at(0.0), only_gated(0)), Gating::Usual);
+        assert_eq!(shares.say(at(0.94), only_gated(5)), Gating::Usual);
+        assert_eq!(shares.say(at(0.95), only_gated(5)), Gating::Excess { for_s: 0.0 });
+        assert_eq!(shares.say(at(1.8), only_gated(5)), Gating::Excess { for_s: 0.85 });
+    }
+
+    /// One instant of exactly ten, and what is above it or no number, count as ten; a mean of exactly three or one and a half is no more.
+    #[test]
+    fn a_mean_that_is_just_reached_is_as_declared() {
+        let mut shares = Shares::new();
+        for k in 0..20 {
+            // Instants of one time forget nothing: the mean is a plain one.
+            shares.innovations(at(0.0), &Block { square: [12.0, 0.0][k % 2], freedom: 2 });
+        }
+        assert!(shares.tuning() == Tuning::AsDeclared, "the mean of six and nothing is three");
+        shares.innovations(at(0.0), &Block { square: 12.0, freedom: 2 });
+        assert!(shares.tuning() == Tuning::Foreign, "six more are more than three in the mean");
+        for _ in 0..21 {
+            shares.innovations(at(0.0), &Block { square: 0.0, freedom: 2 });
+        }
+        assert!(shares.tuning() == Tuning::Foreign, "66 of 42 are more than one and a half");
+        shares.innovations(at(0.0), &Block { square: 0.0, freedom: 2 });
+        shares.innovations(at(0.0), &Block { square: 0.0, freedom: 2 });
+        assert!(shares.tuning() == Tuning::AsDeclared, "66 of 44 are one and a half");
+        // Four instants say nothing, five do.
+        for (n, foreign) in [(4, false), (5, true)] {
+            let mut shares = Shares::new();
+            (0..n).for_each(|_| shares.innovations(at(0.0), &Block { square: 16.0, freedom: 2 }));
+            assert_eq!(shares.tuning() == Tuning::Foreign, foreign, "{n}");
+        }
     }
 }

@@ -246,4 +246,126 @@ mod tests {
             assert_eq!(wrapped(angle), expected);
         }
     }
+
+    /// A bearing of one station, a constant residual: the variance is that across the line over the square of the distance, and both parts
+    /// of the bearing's own. The reading's variances are unlike, so that every turn and every product shows.
+    #[test]
+    fn a_bearing_is_judged_by_the_variance_across_the_line() {
+        use crate::frame::{Geodetic, LatLon};
+        use crate::quantity::Radians;
+        use crate::signal::VorBearing;
+        let point = LatLon::new(Radians::new(0.7), Radians::new(2.0)).unwrap();
+        let position = Geodetic { point, height: Metres::new(100.0) };
+        let turn = enu_from_ecef(&point);
+        let enu = Matrix3::new(900.0, -300.0, 40.0, -300.0, 2500.0, 70.0, 40.0, 70.0, 400.0);
+        for (east, north, off_deg) in
+            [(30_000.0, 40_000.0, 0.2), (-8000.0, 6000.0, -0.9), (5000.0, -12_000.0, 0.5), (-3000.0, -4000.0, 2.0)]
+        {
+            let place = ecef_from_geodetic(&position).vector() + turn.transpose() * Vector3::new(east, north, 700.0);
+            let reading = Reading { ecef: place, covariance: turn.transpose() * enu * turn };
+            let distance = f64::hypot(east, north);
+            let off = f64::to_radians(off_deg);
+            let m = VorBearing {
+                station: 9,
+                position,
+                bearing: Radians::new(f64::atan2(east, north) + off),
+                sigma_white: Radians::new(0.012),
+                sigma_bias: Radians::new(0.004),
+            };
+            let mut stations = Stations::<1>::default();
+            for second in 0..30 {
+                stations.hear_bearing(GpsTime::default().plus_seconds(f64::from(second)), &m, &[reading]);
+            }
+            let across = (north * north * 900.0 + 2.0 * north * east * 300.0 + east * east * 2500.0) / (distance * distance);
+            let variance = 0.004 * 0.004 + 0.012 * 0.012 * 0.1 / 1.9 + across / (distance * distance);
+            let expected = 2.0 * crate::special::normal::tail(off.abs() / variance.sqrt());
+            let chance = stations.chance(GpsTime::default().plus_seconds(29.0), 0, 1).unwrap();
+            // Rounding of 6e6 m is 1e-9 m of kilometres.
+            assert!((chance / expected - 1.0).abs() < 1e-6, "{east} {north}: {chance} {expected}");
+        }
+    }
+
+    /// Everything that was heard, kept and summed as it is: each mean with its weights, each silence, and the chance of all together.
+    #[test]
+    fn means_and_silences_are_those_of_all_that_was_heard() {
+        let mut state = 3_u64;
+        let mut draw = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let (mut stations, mut history) = (Stations::<1>::default(), Vec::new());
+        let (white, bias) = (3.0, 1.0);
+        let mut reported = 0;
+        for second in 0..600_u32 {
+            let time = GpsTime::default().plus_seconds(f64::from(second));
+            for station in 1..=4_u16 {
+                // Each is silent for a while, of five seconds and of six.
+                let silent = 4 + u32::from(station) / 2;
+                if (second + 20 * u32::from(station)) % 60 >= silent {
+                    let (residual, variance) = (4.0 * draw() - 1.0, 2.0 * draw());
+                    stations.note(time, station, [white, bias], [(residual, variance)]);
+                    history.push((station, second, residual, variance));
+                }
+            }
+            let mut heard = Vec::new();
+            for station in 1..=4_u16 {
+                let own: Vec<_> = history.iter().filter(|h| h.0 == station).collect();
+                // From the last silence of more than five seconds on.
+                let from = (1..own.len()).rev().find(|k| own[*k].1 - own[k - 1].1 > 5).unwrap_or(0);
+                let Some(run) = own.get(from..).filter(|run| run.len() >= 10 && second - run[run.len() - 1].1 <= 5) else { continue };
+                // The first ten weigh alike; each later one takes a tenth of the whole.
+                let first = run[..10].iter().map(|h| h.2).sum::<f64>() / 10.0;
+                let later = run.len() - 10;
+                let mean = run[10..].iter().enumerate().map(|(k, h)| 0.1 * 0.9_f64.powi((later - 1 - k) as i32) * h.2).sum::<f64>()
+                    + 0.9_f64.powi(later as i32) * first;
+                heard.push((run.len() as f64, mean, run[run.len() - 1].3));
+            }
+            let n = heard.len() as f64;
+            let square: f64 = heard
+                .iter()
+                .map(|(of, mean, position)| mean * mean / (bias * bias + white * white * (1.0 / of).max(0.1 / 1.9) + n * position))
+                .sum();
+            let now = time;
+            for least in 1..=5 {
+                let chance = stations.chance(now, 0, least);
+                assert_eq!(chance.is_some(), heard.len() >= least, "{second}");
+                if let Some(chance) = chance {
+                    let expected = chi_square_tail(n, square);
+                    assert!((chance - expected).abs() < 1e-12, "{second}: {chance} {expected}");
+                    reported += 1;
+                }
+            }
+        }
+        assert!(reported > 1500, "{reported}");
+    }
+
+    /// There is room for sixteen; the next one takes the place of the one unheard for longest.
+    #[test]
+    fn the_station_unheard_for_longest_is_forgotten() {
+        let mut stations = Stations::<1>::default();
+        let at = |second: u16| GpsTime::default().plus_seconds(f64::from(second));
+        for station in 1..=16_u16 {
+            stations.note(at(station), station, [1.0, 1.0], [(0.0, 1.0)]);
+        }
+        stations.note(at(17), 1, [1.0, 1.0], [(0.0, 1.0)]);
+        stations.note(at(18), 40, [1.0, 1.0], [(0.0, 1.0)]);
+        let mut known: Vec<_> = stations.record.iter().flatten().map(|r| r.station).collect();
+        known.sort_unstable();
+        assert_eq!(known, [1, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 40]);
+    }
+
+    #[test]
+    fn a_chance_that_is_just_reached_is_the_better_word() {
+        for (chance, reported) in [
+            (1.0, Testimony::Agrees),
+            (1e-3, Testimony::Agrees),
+            (0.999e-3, Testimony::Doubts),
+            (1e-7, Testimony::Doubts),
+            (0.999e-7, Testimony::Contradicts),
+            (0.0, Testimony::Contradicts),
+            (f64::NAN, Testimony::Contradicts),
+        ] {
+            assert_eq!(testimony(chance), reported, "{chance}");
+        }
+    }
 }

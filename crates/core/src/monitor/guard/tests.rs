@@ -26,7 +26,7 @@ impl Draw {
 }
 
 /// A body at rest on a turning Earth; eight satellites that stand still, each with a slow error.
-struct World {
+pub(super) struct World {
     draw: Draw,
     position: Geodetic,
     slow: [f64; 8],
@@ -38,19 +38,19 @@ const WHITE_M: f64 = 1.0;
 const TAU_S: f64 = 1000.0;
 
 impl World {
-    fn new(seed: u64) -> Self {
+    pub(super) fn new(seed: u64) -> Self {
         let point = LatLon::new(Radians::new(0.7), Radians::new(2.0)).unwrap();
         let mut draw = Draw(seed);
         let slow = core::array::from_fn(|_| SLOW_M * draw.normal());
         Self { draw, position: Geodetic { point, height: Metres::new(1000.0) }, slow, second: 0 }
     }
 
-    fn time(&self) -> GpsTime {
+    pub(super) fn time(&self) -> GpsTime {
         GpsTime::default().plus_seconds(f64::from(self.second))
     }
 
     /// The filter starts wrong by its deviations.
-    fn filter(&mut self) -> Fusion {
+    pub(super) fn filter(&mut self) -> Fusion {
         // The unit of this world is perfect, and the filter knows that.
         let perfect = SensorNoise { white: 1e-12, bias: 1e-12, bias_time_s: 3600.0 };
         let mut settings = FilterSettings::of(ImuModel { gyroscope: perfect, accelerometer: perfect });
@@ -63,7 +63,7 @@ impl World {
         Fusion::new(NavState::new(self.time(), &start, Vector3::zeros(), &level).unwrap(), &sigma, settings).unwrap()
     }
 
-    fn ranges(&mut self) -> Vec<TimedAiding> {
+    pub(super) fn ranges(&mut self) -> Vec<TimedAiding> {
         let here = ecef_from_geodetic(&self.position);
         let enu = enu_from_ecef(&self.position.point);
         let keep = (-1.0 / TAU_S).exp();
@@ -93,7 +93,7 @@ impl World {
     }
 
     /// A second passes; what a unit at rest delivers.
-    fn sample(&mut self) -> ImuIncrement {
+    pub(super) fn sample(&mut self) -> ImuIncrement {
         self.second += 1;
         let lat = self.position.point.lat();
         let rate = crate::frame::earth_rate_ned(lat.rad().sin(), lat.rad().cos());
@@ -184,7 +184,7 @@ fn a_unit_is_doubted_for_what_it_delivers_and_a_healthy_one_is_not() {
     assert_eq!(seen_after(|_, f, w| (f * f64::NAN, w)), Some(0));
 }
 
-const SETTINGS: Settings = Settings {
+pub(super) const SETTINGS: Settings = Settings {
     envelope: Envelope::NONE,
     requirement: Requirement::RAIM,
     age_sigma_s: 0.1,
@@ -250,7 +250,7 @@ fn the_satellites_own_acceleration_is_the_change_of_their_velocity() {
 }
 
 /// A solved position east of the antenna of the world.
-fn fix(world: &World, east_m: f64, variance_m2: f64) -> TimedAiding {
+pub(super) fn fix(world: &World, east_m: f64, variance_m2: f64) -> TimedAiding {
     let position = world.position.moved(&Displacement::<Enu>::from_vector(Vector3::new(east_m, 0.0, 0.0))).unwrap();
     let covariance = Covariance::claim_symmetric(nalgebra::Matrix3::identity() * variance_m2);
     let fix = PositionFix { position, covariance, velocity_ned_mps: None, level_m: None };
