@@ -238,3 +238,46 @@ impl Rest {
         (&self.sights[..count], &self.residuals_m[..count.min(residuals_m.len())])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{P_CONST, published};
+    use super::*;
+    use crate::quantity::Risk;
+
+    /// Every pair may be faulty together: more modes than are tried. The ones that are kept are the largest of all, in their order.
+    #[test]
+    fn the_modes_that_are_tried_are_the_sixteen_with_the_largest_separations() {
+        let every = Service { consolidation: 0.0, unmonitored: Risk::constant(1e-12), ..Service::LPV_200 };
+        for faulty in 0..10_usize {
+            let sights = published(1e-4);
+            let residuals: Vec<_> = (0..10_usize).map(|i| (3 * i % 7) as f64 + if i == faulty { 30.0 } else { 0.0 }).collect();
+            let modes = every.modes(&sights, &P_CONST).unwrap();
+            let (mut solver, mut separation) = (Solver::default(), Separation::default());
+            solver.levels(&mut separation, &sights, &residuals, &Terms { modes: &modes, service: &every, share: 1.0 }).unwrap();
+            let mut all = Vec::new();
+            solver.ratios(&separation, &modes, &every, |mask, ratio| all.push((mask, ratio)));
+            assert!(all.len() > 3 * MOST_TRIED, "{}", all.len());
+            // A stable sort: of equal ones the first stays first.
+            all.sort_by(|a, b| b.1.total_cmp(&a.1));
+            let suspects = Candidates::suspects(&mut solver, &separation, &modes, &every);
+            assert_eq!(suspects.count, MOST_TRIED);
+            let kept: Vec<_> = suspects.mask.iter().copied().zip(suspects.ratio).take(MOST_TRIED).collect();
+            assert_eq!(kept, all[..MOST_TRIED]);
+        }
+    }
+
+    /// As many as may be excluded, and the share of each: every mode likelier than the risk, in the order of the list, and nothing.
+    #[test]
+    fn a_decision_is_every_mode_that_is_likelier_than_the_risk() {
+        let service = Service::LPV_200;
+        for p_sat in [1e-5, 1e-7, 1.1e-7] {
+            let modes = service.modes(&published(p_sat), &P_CONST).unwrap();
+            let likely = Candidates::likely(&modes, &service).unwrap();
+            // The whole integrity risk of this service is 1e-7.
+            let expected: Vec<_> = modes.iter().skip(1).filter(|m| m.p > service.integrity()).map(|m| m.satellites).collect();
+            assert_eq!(likely.masks().collect::<Vec<_>>(), expected);
+            assert_eq!(likely.share(), 1.0 / (expected.len() + 1) as f64);
+        }
+    }
+}

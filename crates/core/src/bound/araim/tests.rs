@@ -18,9 +18,9 @@ const PUBLISHED: [([f64; 3], f64, f64); 10] = [
     ([-0.5571, -0.3088, 0.7709], 0.8573, 0.5448),
     ([-0.6622, -0.6958, 0.278], 1.3616, 1.0491),
 ];
-const P_CONST: [f64; Constellation::ALL.len()] = [1e-4; Constellation::ALL.len()];
+pub(super) const P_CONST: [f64; Constellation::ALL.len()] = [1e-4; Constellation::ALL.len()];
 
-fn published(p_sat: f64) -> Vec<Sight> {
+pub(super) fn published(p_sat: f64) -> Vec<Sight> {
     let sight = |(i, (unit, integrity_m2, accuracy_m2)): (usize, &([f64; 3], f64, f64))| Sight {
         unit: Vector3::from(*unit),
         constellation: if i < 5 { Constellation::Gps } else { Constellation::Galileo },
@@ -240,4 +240,160 @@ fn a_ceiling_is_above_the_level_and_meets_it_where_variances_tell_all() {
         }
     }
     assert!(seen > 500 && 10 * (tight + near) > 9 * seen, "{tight} and {near} of {seen}");
+}
+
+/// Lists every satellite, and the constellations too where one satellite has left: what is not monitored beforehand is there after an exclusion.
+struct Wary(Option<FaultModes>, usize);
+
+impl Book for Wary {
+    fn modes(&mut self, sights: &[Sight], service: &Service) -> Result<&FaultModes, NoModes> {
+        let p_const = if sights.len() < self.1 { P_CONST } else { P_CONST.map(|_| 1e-20) };
+        Ok(self.0.insert(service.modes(sights, &p_const)?))
+    }
+}
+
+/// A decision's modes may be others than those of the epoch: the levels are those of every decision worked out, whatever the book lists.
+#[test]
+fn the_promise_holds_where_a_decision_has_modes_that_the_epoch_has_not() {
+    let service = Service::HORIZONTAL;
+    let mut seen = 0;
+    for sights in skies(21, false).filter(|s| s.len() >= 12) {
+        let n = sights.len();
+        let prediction = predicted(&mut Monitor::default(), &mut Wary(None, n), &sights, &service).unwrap();
+        let mut book = Wary(None, n);
+        let likely: Vec<_> =
+            book.modes(&sights, &service).unwrap().iter().skip(1).filter(|m| m.p > service.integrity()).map(|m| m.satellites).collect();
+        assert!(likely.iter().all(|m| m.count_ones() == 1));
+        let share = 1.0 / (1 + likely.len()) as f64;
+        let mut largest = [0.0_f64; 2];
+        for out in core::iter::once(0).chain(likely) {
+            let left: Vec<_> = (0..n).filter(|i| out >> i & 1 == 0).map(|i| sights[i]).collect();
+            let modes = book.modes(&left, &service).unwrap();
+            let levels = Solver::default().levels(&mut Separation::default(), &left, &[], &Terms { modes, service: &service, share });
+            let levels = levels.map_or([f64::INFINITY; 2], |l| [l.hpl.m(), l.vpl_m()]);
+            largest = [0, 1].map(|k| largest[k].max(levels[k]));
+        }
+        // The same numbers compared, so the same bits.
+        assert_eq!([prediction.hpl.m(), prediction.vpl_m()], largest);
+        seen += usize::from(largest[0].is_finite());
+    }
+    assert!(seen > 10, "{seen}");
+}
+
+/// A monitor that has served other requirements, and one as new: thresholds are of the service that is requested.
+#[test]
+fn what_a_monitor_has_served_before_changes_nothing() {
+    let sights = published(1e-5);
+    let strict = Service { false_alarm_v: Risk::constant(1e-9), false_alarm_h: Risk::constant(2e-9), ..Service::LPV_200 };
+    let modes = strict.modes(&sights, &P_CONST).unwrap();
+    let mut used = Monitor::default();
+    for service in [&strict, &Service::LPV_200, &Service::HORIZONTAL, &strict, &Service::LPV_200] {
+        let anew = Monitor::default().levels(&sights, &modes, service).unwrap();
+        assert_eq!(used.levels(&sights, &modes, service).unwrap(), anew);
+        // K = Q^-1(P_FA / (4 N)) and Q^-1(P_FA / (2 N)), N faults; this example has no bias for continuity.
+        let faults = (modes.len() - 1) as f64;
+        let k = [0.25 * service.false_alarm_h.q() / faults, 0.5 * service.false_alarm_v.q() / faults].map(one_sided_factor);
+        for report in used.report(&modes, service).skip(1) {
+            for (a, k) in [k[0], k[0], k[1]].into_iter().enumerate() {
+                assert!((report.threshold[a].m() - k * report.sigma_separation[a].m()).abs() <= 1e-12 * report.threshold[a].m());
+            }
+        }
+    }
+}
+
+/// Every column of both entries is the number of its name, and there is none beyond them.
+#[test]
+fn a_column_is_the_number_of_its_name() {
+    use crate::bound::Algorithm;
+    let m = Metres::new;
+    let detail = Detail {
+        axes: [m(1.5), m(2.5)],
+        emt: m(3.5),
+        sigma_accuracy: [m(4.5), m(5.5), m(6.5)],
+        n_modes: 17,
+        n_monitored: 13,
+        p_unmonitored: 1e-9,
+    };
+    let named = [
+        ("hpl_e_m", 1.5),
+        ("hpl_n_m", 2.5),
+        ("emt_m", 3.5),
+        ("sigma_acc_e_m", 4.5),
+        ("sigma_acc_n_m", 5.5),
+        ("sigma_acc_u_m", 6.5),
+        ("p_unmonitored", 1e-9),
+        ("n_modes", 17.0),
+        ("n_monitored", 13.0),
+    ];
+    fn columns<A: Algorithm<Detail = Detail>>(detail: &Detail) -> Vec<(&'static str, f64)> {
+        A::COLUMNS.iter().enumerate().map(|(k, name)| (*name, A::number(detail, k))).collect()
+    }
+    assert_eq!(columns::<listed::Araim>(&detail), named);
+    assert_eq!(columns::<listed::Separation>(&detail), named);
+    assert!(listed::Araim::number(&detail, named.len()).is_nan() && listed::Separation::number(&detail, named.len()).is_nan());
+}
+
+/// Largest separation of each monitored mode against its threshold, and the solution with all: normal equations with a column for each clock.
+fn separations(sights: &[Sight], residuals: &[f64], service: &Service) -> (Vec<(u64, f64)>, Vector3<f64>) {
+    let solve = |out: u64| {
+        let mut normal = nalgebra::SMatrix::<f64, 5, 5>::zeros();
+        let mut right = nalgebra::SVector::<f64, 5>::zeros();
+        for (i, s) in sights.iter().enumerate().filter(|(i, _)| out >> i & 1 == 0) {
+            let mut row = nalgebra::SVector::<f64, 5>::zeros();
+            row.fixed_rows_mut::<3>(0).copy_from(&-s.unit);
+            row[if s.constellation == Constellation::Gps { 3 } else { 4 }] = 1.0;
+            normal += row * row.transpose() / s.integrity_m2;
+            right += row * residuals[i] / s.integrity_m2;
+        }
+        // A constellation without satellites has no clock.
+        (3..5).filter(|k| normal[(*k, *k)] == 0.0).collect::<Vec<_>>().into_iter().for_each(|k| normal[(k, k)] = 1.0);
+        normal.lu().solve(&right).unwrap().fixed_rows::<3>(0).into_owned()
+    };
+    let mut monitor = Monitor::default();
+    let modes = service.modes(sights, &P_CONST).unwrap();
+    monitor.levels(sights, &modes, service).unwrap();
+    let all = solve(0);
+    let ratio = |r: &ModeReport| {
+        let moved = solve(r.mode.satellites) - all;
+        (0..3).map(|a| if moved[a].abs() > 1e-6 { moved[a].abs() / r.threshold[a].m() } else { 0.0 }).fold(0.0, f64::max)
+    };
+    (monitor.report(&modes, service).skip(1).filter(|r| r.monitored).map(|r| (r.mode.satellites, ratio(&r))).collect(), all)
+}
+
+/// Every decision by its words: nothing where all agree, else the likely modes in the order of their separations, the first that leaves agreement.
+#[test]
+fn the_fault_that_is_excluded_is_the_first_after_which_all_agree() {
+    let service = Service::LPV_200;
+    let mut seen = [0; 3];
+    for (k, sights) in skies(31, false).enumerate() {
+        // A fault of no, one or two satellites, of a size from nothing to a hundred metres; clocks of 3 m and 8 m.
+        let mut residuals: Vec<_> = sights.iter().map(|s| if s.constellation == Constellation::Gps { 3.0 } else { 8.0 }).collect();
+        residuals[k % sights.len()] += [0.0, 15.0, 40.0, 100.0][k % 4];
+        residuals[(k * 5 + 1) % sights.len()] += [0.0, 0.0, -60.0][k % 3];
+        let outcome = monitored(&mut Monitor::default(), &mut Anew(None), &sights, &residuals, &service).unwrap();
+        let (mut ratios, step) = separations(&sights, &residuals, &service);
+        ratios.sort_by(|a, b| b.1.total_cmp(&a.1));
+        assert!((outcome.worst_ratio - ratios[0].1).abs() <= 1e-9 * ratios[0].1, "{k}: {} {:?}", outcome.worst_ratio, ratios[0]);
+        let (share, decisions) = each_exclusion(&sights, &service);
+        assert!(decisions.len() > 1 && share == 1.0 / decisions.len() as f64);
+        let without = |out: u64| -> (Vec<Sight>, Vec<f64>) {
+            (0..sights.len()).filter(|i| out >> i & 1 == 0).map(|i| (sights[i], residuals[i])).unzip()
+        };
+        let agrees = |out: u64| {
+            let levels = decisions.iter().find(|d| d.0 == out)?.1.as_ref().filter(|l| l.finite())?;
+            let (left, residuals) = without(out);
+            separations(&left, &residuals, &service).0.iter().all(|r| r.1 <= 1.0).then_some(*levels)
+        };
+        let first = ratios.iter().take(16).find_map(|(out, _)| Some((*out, agrees(*out)?)));
+        let (decision, out, levels) = match first {
+            _ if ratios[0].1 <= 1.0 => (exclusion::Decision::Nothing, 0, decisions[0].1.unwrap()),
+            Some((out, levels)) => (exclusion::Decision::Excluded, out, levels),
+            None => (exclusion::Decision::NotExcluded, 0, decisions[0].1.unwrap()),
+        };
+        assert_eq!((outcome.decision, outcome.excluded, outcome.levels), (decision, out, levels), "{k}");
+        let step = if out == 0 { step } else { separations(&without(out).0, &without(out).1, &service).1 };
+        (0..3).for_each(|a| assert!((outcome.step[a].m() - step[a]).abs() < 1e-8 * (1.0 + step.norm()), "{k}"));
+        seen[decision as usize] += 1;
+    }
+    assert!(seen.iter().all(|n| *n > 3), "{seen:?}");
 }

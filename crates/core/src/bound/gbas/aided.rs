@@ -286,6 +286,107 @@ mod tests {
         assert!(difference < 1e-4 * snapshot.covariance().matrix().amax(), "{difference}");
     }
 
+    /// Equation 3 in vectors: d/dt of position, velocity, attitude and clock of any error.
+    #[test]
+    fn the_matrix_of_the_dynamics_is_equation_3() {
+        let (s, c) = 0.7_f64.sin_cos();
+        let turning = Vector3::new(0.0, 7.292_115e-5 * c, 7.292_115e-5 * s);
+        let (g, radius) = (9.806_65, 6_371_000.0);
+        let x = SVector::<f64, BASE>::from_fn(|i, _| ((7 * i + 3) % 11) as f64 - 4.5);
+        let part = |from: usize| x.fixed_rows::<3>(from).into_owned();
+        let (p, v, attitude) = (part(0), part(3), part(6));
+        let mut expected = SVector::<f64, BASE>::zeros();
+        expected.fixed_rows_mut::<3>(0).copy_from(&v);
+        let gravity = Vector3::new(-p.x, -p.y, 2.0 * p.z) * (g / radius);
+        let force = Vector3::new(0.0, 0.0, g);
+        expected.fixed_rows_mut::<3>(3).copy_from(&(gravity - 2.0 * turning.cross(&v) - force.cross(&attitude) - part(9)));
+        expected.fixed_rows_mut::<3>(6).copy_from(&(-turning.cross(&attitude) - part(12)));
+        expected[15] = x[16];
+        // Sums of numbers below a hundred.
+        assert!((dynamics(Radians::new(0.7)) * x - expected).amax() < 1e-13);
+    }
+
+    /// The transition is that of a million short steps, the driven noise the trapezoid of what drives it.
+    #[test]
+    fn a_step_is_many_short_ones() {
+        for step_s in [1.0, 0.5] {
+            let (transition, driven) = discrete(Radians::new(0.7), &INERTIAL, step_s);
+            let mut many = SMatrix::<f64, BASE, BASE>::identity() + dynamics(Radians::new(0.7)) * (step_s / f64::from(1 << 20));
+            (0..20).for_each(|_| many = many * many);
+            // The fourth term, of which a turning Earth makes 2 w g / 24 = 6e-5 in a second, is left out; the short steps are 1e-5 away.
+            assert!((transition - many).amax() < 7e-5, "{}", (transition - many).amax());
+            let mut q = SMatrix::<f64, BASE, BASE>::zeros();
+            let (force, rate) = (INERTIAL.accelerometer_walk_mps_per_root_s, INERTIAL.gyro_walk_rad_per_root_s);
+            for k in 0..3 {
+                (q[(3 + k, 3 + k)], q[(6 + k, 6 + k)]) = (force * force, rate * rate);
+            }
+            let light = 299_792_458.0_f64;
+            q[(15, 15)] = 0.5 * INERTIAL.clock_h0_s * light * light;
+            q[(16, 16)] = 2.0 * (core::f64::consts::PI * light).powi(2) * INERTIAL.clock_h_minus_2_per_s;
+            let expected = (q + many * q * many.transpose()) * (0.5 * step_s);
+            for (i, j) in (0..BASE).flat_map(|i| (0..BASE).map(move |j| (i, j))) {
+                let scale = (expected[(i, i)] * expected[(j, j)]).sqrt();
+                assert!((driven[(i, j)] - expected[(i, j)]).abs() <= 1e-4 * scale, "{i} {j}");
+            }
+        }
+    }
+
+    /// One instant of ranges and rates from what is known before it, all at once: the sum of the information, inverted as a whole.
+    #[test]
+    fn measurements_one_by_one_are_the_sum_of_their_information() {
+        const N: usize = BASE + 7;
+        let mut satellites = sky(Form::Bound);
+        (4..7).for_each(|k| satellites[k].constellation = Constellation::Galileo);
+        let mut filter = Aided::new(&satellites, Radians::degrees(41.3), &INERTIAL, 1.0).unwrap();
+        let before = filter.covariance;
+        // 100 m, 10 m/s, 0.02 rad, the biases of the unit, 1e4 m and 10 m/s of the clock, 1e4 m of the other clock.
+        for (state, sigma) in [
+            (0, 100.0),
+            (4, 10.0),
+            (8, 0.02),
+            (9, INERTIAL.accelerometer_bias_mps2),
+            (13, INERTIAL.gyro_bias_radps),
+            (15, 1e4),
+            (16, 10.0),
+            (17 + Constellation::Galileo.index(), 1e4),
+        ] {
+            assert!((before[state][state] / (sigma * sigma) - 1.0).abs() < 1e-15, "{state}");
+        }
+        assert_eq!(before[17 + Constellation::Gps.index()][17 + Constellation::Gps.index()], 0.0);
+        // In deviations of before; what has none has no part.
+        let sigma = SVector::<f64, N>::from_fn(|i, _| before[i][i].sqrt());
+        let mut information = SMatrix::<f64, N, N>::identity();
+        let mut add = |row: SVector<f64, N>, variance: f64| {
+            let row = row.component_mul(&sigma);
+            information += row * row.transpose() / variance;
+        };
+        for (k, s) in satellites.iter().enumerate() {
+            let (mut range, mut rate) = (SVector::<f64, N>::zeros(), SVector::<f64, N>::zeros());
+            range.fixed_rows_mut::<3>(0).copy_from(&-s.unit);
+            rate.fixed_rows_mut::<3>(3).copy_from(&-s.unit);
+            (range[15], range[BASE + k], rate[16]) = (1.0, 1.0, 1.0);
+            if k >= 4 {
+                range[17 + Constellation::Galileo.index()] = 1.0;
+            }
+            add(range, s.white.m().powi(2) + INERTIAL.receiver_noise.m().powi(2));
+            add(rate, INERTIAL.doppler_mps.powi(2));
+        }
+        let after = information.cholesky().unwrap().inverse();
+        filter.measure();
+        for i in 0..N {
+            for j in 0..N {
+                let scale = sigma[i] * sigma[j];
+                let expected = after[(i, j)] * scale;
+                // Clocks of 1e4 m against 0.1 m cost ten of sixteen digits.
+                assert!((filter.covariance[i][j] - expected).abs() <= 1e-6 * scale, "{i} {j}: {} {expected}", filter.covariance[i][j]);
+            }
+        }
+        for i in [0, 1, 2, 3, 4, 5, 16] {
+            let expected = after[(i, i)] * sigma[i] * sigma[i];
+            assert!((filter.covariance[i][i] / expected - 1.0).abs() < 1e-2, "{i}: {} {expected}", filter.covariance[i][i]);
+        }
+    }
+
     #[test]
     fn a_filter_without_satellites_is_refused() {
         assert_eq!(Aided::new(&[], Radians::new(0.7), &INERTIAL, 1.0).unwrap_err().argument, "n_sv");

@@ -254,7 +254,12 @@ mod tests {
         assert_eq!(named(&Approach { rnp: Metres::new(-1.0), ..at }), "rnp_m");
         assert_eq!(named(&Approach { angle: Radians::degrees(0.009), ..at }), "angle_rad");
         assert_eq!(named(&Approach { angle: Radians::new(2.0), ..at }), "angle_rad");
+        // A path of no angle to the last digit, and one straight down.
+        assert_eq!(named(&Approach { angle: ANGLE_STEP, ..at }), "angle_rad");
+        assert_eq!(named(&Approach { angle: Radians::new(FRAC_PI_2), ..at }), "angle_rad");
         assert_eq!(named(&Approach { threshold: Metres::new(-2001.0), ..at }), "threshold_m");
+        let lowest = Approach { threshold: Metres::new(-2000.0), altitude: Metres::new(11_000.0), ..at };
+        assert!(Budget::new(&FEET, &lowest, ft(25.0), ft(0.0)).is_ok());
         assert_eq!(named(&Approach { altitude: ft(499.0), ..at }), "altitude_m");
         assert_eq!(named(&Approach { altitude: Metres::new(f64::INFINITY), ..at }), "altitude_m");
         assert_eq!(Budget::new(&FEET, &at, ft(-1.0), ft(0.0)).unwrap_err().argument, "body_geometry_m");
