@@ -123,7 +123,10 @@ def _predictions() -> Choices:
 def _protection() -> Choices:
     from navbound.algorithms import Recorded, entries  # noqa: PLC0415
 
-    return [("given", "of the files"), *((name, entry.source) for name, entry in entries(Recorded).items())]
+    return [
+        ("given", "of a table, or of the SBAS messages among the files"),
+        *((name, entry.source) for name, entry in entries(Recorded).items()),
+    ]
 
 
 def _models() -> Choices:

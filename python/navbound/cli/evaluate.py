@@ -22,7 +22,7 @@ from navbound.cli.parts import (
     Ionosphere,
     Json,
     Mask,
-    Out,
+    OutOfLevels,
     Solve,
     Truth,
     TruthTolerance,
@@ -49,7 +49,9 @@ _MIN = "With --stanford-esa: fewest satellites of a subset. [default: 4]"
 _MAX = "With --stanford-esa: at most 2 to this power subsets an epoch; beyond, fewer satellites are left out. [default: 14]"
 _LISTED = "With --stanford-esa: safety index from which a subset is listed. [default: 0.7]"
 _EXPERIMENTAL = "Words beside levels that no integrity rests on ('experimental, not integrity')."
-_PROTECTION = f"Protection levels of observations from given (the files), {', '.join(entries(Recorded))}."
+_PROTECTION = (
+    f"Protection levels of observations from given (a table, or the SBAS messages among the files), {', '.join(entries(Recorded))}."
+)
 
 OldLevels = Annotated[str | None, typer.Option("--levels", hidden=True)]
 OldPrn = Annotated[int | None, typer.Option("--prn", hidden=True)]
@@ -116,7 +118,7 @@ def evaluate_command(
     systems: Annotated[str | None, typer.Option(help=SYSTEMS.format("G"))] = None,
     ionosphere: Ionosphere = None,
     mask: Mask = None,
-    out: Out = None,
+    out: OutOfLevels = None,
     json: Json = False,
 ) -> None:
     """Evaluate errors and protection levels against service levels: accuracy, integrity, availability, continuity.
@@ -141,7 +143,7 @@ def evaluate_command(
 
 def run(files: list[Path], levels: str, of_levels: Options, reading: dict[str, Any], out: Path | None, *, json: bool) -> None:
     """Evaluate, print and end with the status of the verdict."""
-    subsets, folder = of_levels.subsets(), run_folder(files, out)
+    subsets, folder = of_levels.subsets(), run_folder(files, out, "evaluate-")
     interrupt.keep(f"Finished files are kept in {folder}: the same command goes on from there.")
     with Bar("files") as progress:
         evaluated = call(

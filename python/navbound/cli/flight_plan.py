@@ -34,7 +34,7 @@ def predict_flight_command(plans: list[str], unused: Mapping[str, object], out: 
         return
     show(expected.record)
     if target is not None:
-        out_console.print(f"Written: {target}", markup=False, highlight=False)
+        out_console.print(f"Written: {target}; its page: {target / flight.PAGE}", markup=False, highlight=False)
 
 
 MOST_COLUMNS = 8

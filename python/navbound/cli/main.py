@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import itertools
 import os
 import sys
 from collections.abc import Callable
@@ -148,11 +149,34 @@ def _end_by(surprise: BaseException) -> None:
     if isinstance(surprise, OSError) and surprise.errno in _FULL:
         _die(f"{surprise.filename or 'a file that was to be written'}: {surprise.strerror}", UNREADABLE)
     if hasattr(surprise, "format_message"):
-        _die(surprise.format_message(), USAGE)
+        _die(_of_parser(surprise), USAGE)
     if os.environ.get("NAVBOUND_TRACEBACK"):
         raise surprise
     what = f"{type(surprise).__name__}: {surprise}"
     _die(f"this is a bug in navbound, please report it: {what} (set NAVBOUND_TRACEBACK=1 for the traceback)", OUR_BUG)
+
+
+def _of_parser(refusal: Any) -> str:
+    """The parser's refusal, with the value that was typed where it names none, and with what the argument is."""
+    words: str = refusal.format_message()
+    parameter = getattr(refusal, "param", None)
+    meant = getattr(parameter, "help", None)
+    if not meant:
+        return words
+    typed = _typed(parameter.opts)
+    is_absent = type(refusal).__name__ == "MissingParameter"
+    if is_absent or typed is None or typed in words:
+        return f"{words.removesuffix('.')}: {meant}"
+    return f"{parameter.opts[0]} = {typed} is not accepted: {words.partition(': ')[2] or words}; it is: {meant}"
+
+
+def _typed(options: list[str]) -> str | None:
+    """What stands behind an option on the command line; None where it does not stand there exactly once."""
+    arguments = sys.argv[1:]
+    behind = [value for word, value in itertools.pairwise(arguments) if word in options]
+    joined = [word.partition("=")[2] for word in arguments if word.partition("=")[0] in options and "=" in word]
+    found = [*behind, *joined]
+    return found[0] if len(found) == 1 else None
 
 
 def _option(argument: str) -> str:

@@ -20,7 +20,7 @@ from rich.console import Console
 
 from navbound.cli import interrupt
 from navbound.cli.choices import POINT, Selectable, Written
-from navbound.errors import ConflictError, InputError
+from navbound.errors import ConflictError, FormatError, InputError
 from navbound.storage.packed import require_there
 
 if TYPE_CHECKING:
@@ -53,6 +53,7 @@ Backend = Annotated[
 NWorkers = Annotated[int | None, typer.Option("--workers", help="Worker processes. [default: one a core]")]
 Cluster = Annotated[str | None, typer.Option(help="Address of a Dask scheduler. [default: one on this machine]")]
 Out = Annotated[Path | None, typer.Option("--out", help="Run directory to write. [default: out/<name>]"), Written()]
+OutOfLevels = Annotated[Path | None, typer.Option("--out", help="Run directory to write. [default: out/evaluate-<name>]"), Written()]
 Files = Annotated[
     list[Path],
     typer.Argument(
@@ -124,10 +125,28 @@ def tolerance(truth_tolerance_s: float | None) -> dict[str, float]:
     return {} if truth_tolerance_s is None else {"truth_tolerance_s": truth_tolerance_s}
 
 
-def run_folder(files: list[Path], out: Path | None) -> Path:
-    """Where a run is written; every file must be there first, before tables are loaded."""
+def run_folder(files: list[Path], out: Path | None, before: str = "") -> Path:
+    """Where a run is written; every file must be there first, before tables are loaded.
+
+    Parameters
+    ----------
+    files : list of Path
+        What is read; the first names the folder.
+    out : Path or None
+        A folder that was named.
+    before : str
+        Stands before the name, so that another command's run of the same file stays.
+
+    Raises
+    ------
+    FormatError
+        A file that is not there, or a folder in the place of one.
+    """
     require_there(files)
-    return out or Path("out") / files[0].name.split(".")[0]
+    for path in files:
+        if path.is_dir():
+            raise FormatError(path, "is a folder; name the files in it")
+    return out or Path("out") / f"{before}{files[0].name.split('.')[0]}"
 
 
 def work_of(backend: str | None, workers: int | None, cluster: str | None, checkpoint: Path | None) -> Work:

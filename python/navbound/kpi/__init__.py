@@ -139,6 +139,8 @@ def stanford(
     if not 0 < alert_limit_m < float("inf"):
         raise InputError("alert_limit_m", alert_limit_m, "m", "(0, inf)")
     shape, (error, bound) = flatten(error_m=(error_m, ()), level_m=(level_m, ()))
+    if np.shape(error_m) != np.shape(level_m):
+        raise InputError("level_m", f"shape {np.shape(level_m)}", domain=f"the shape of error_m, {np.shape(error_m)}")
     if len(shape) != 1:
         raise InputError("error_m", f"shape {shape}", domain="shape (n,)")
     counted = _core.kpi_stanford(np.abs(error), bound, alert_limit_m, bin_m, n_bins(bin_m, limit_m))

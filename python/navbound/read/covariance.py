@@ -245,7 +245,10 @@ def _coded(epochs: pl.DataFrame, have: set[str]) -> Claimed:
     return Claimed(epochs.with_columns(pl.lit(None, pl.Float64).alias(c) for c in COVARIANCE), _NONE, "none")
 
 
-_NONE = "Covariance: none. The file states no accuracy and none was given (sigma_m), so nothing bounds the navigation error."
+_NONE = (
+    "Covariance: none. The file states no accuracy and none was given, so nothing bounds the navigation error: state a sigma (--sigma-m; "
+    "in Python sigma_m), or name the columns that hold one (--map; in Python columns)."
+)
 
 
 def words_beside(claimed: Claimed, unread: Sequence[str]) -> str:

@@ -78,11 +78,12 @@ def truth_of(source: str | Path | None, tolerance_s: float, columns: Mapping[str
         return Truth(None, None, tolerance_s, columns or {})
     text = str(source)
     number = r"\s*[-+]?\d+(?:\.\d*)?\s*"
-    if re.fullmatch(f"{number},{number},{number}", text) is None:
+    if re.fullmatch(f"{number}(?:,{number})+", text) is None or Path(text).exists():
         return Truth(text, None, tolerance_s, columns or {})
     point = np.array([float(part) for part in text.split(",")])
-    if not 6.3e6 < float(np.linalg.norm(point)) < 6.5e6:
-        raise InputError("truth", text, "m", "X,Y,Z of a point within 100 km of the Earth's surface, or a file")
+    if len(point) != 3 or not 6.3e6 < float(np.linalg.norm(point)) < 6.5e6:
+        allowed = "X,Y,Z, Earth-fixed, of a point within 100 km of the Earth's surface (no latitude and longitude), or a file"
+        raise InputError("truth", text, "m", allowed)
     return Truth(text, point, tolerance_s, columns or {})
 
 

@@ -54,7 +54,8 @@ def monitor_of(protection: str) -> Recorded | None:
     """
     known = entries(Recorded)
     if protection != DECLARED_LEVELS and protection not in known:
-        raise NotFoundError("protection", protection, "algorithm", [DECLARED_LEVELS, *known])
+        of_service = f"{DECLARED_LEVELS} takes a table's levels, or repeats those of an SBAS service from its messages among the files"
+        raise NotFoundError("protection", protection, "algorithm", [DECLARED_LEVELS, *known], more=of_service)
     return known.get(protection)
 
 

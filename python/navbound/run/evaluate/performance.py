@@ -161,7 +161,7 @@ def evaluate_files(
         named = str((sources.tables or sources.messages)[0].path)
         raise ConflictError("stanford_esa", because=f"{because} ({named}); observations and navigation data are enough", value=named)
     with ExitStack() as stack:
-        writer = None if out is None else stack.enter_context(folders.own(Path(out), _OWN, "a run's"))
+        writer = None if out is None else stack.enter_context(folders.own(Path(out), _OWN, "an evaluation's"))
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory())) if writer is None else writer.folder
         parts = finished_parts(sources, options, truth, folder / PARTS, progress)
         campaign, events = _add_all(parts, levels, options)

@@ -163,16 +163,17 @@ def _height_words(result: HeightResult, level: float) -> str:
         "geometry": "By geometry (the temperature of the air is in it)",
     }[result.by]
     words = (
-        f"{by}: {result.n} positions on the final approach are {result.mean_m:+.1f} m off the {result.path} path in the mean, "
+        f"{by}: {result.n} positions on the final approach are {result.mean_m:+.1f} m off the {result.path} path in the mean (positive above it), "
         f"{result.least_m:+.1f} to {result.most_m:+.1f} m, RMS {result.rms_m:.1f} m; inside ±{result.limit_m:.2f} m (75 ft, standard) at "
         f"{result.n_inside} of {result.n}, inside what 99.7 % of vertical errors have to be below (AC 90-101A, standard; from "
         f"{result.required_m:.1f} m) at {result.n_inside_required} of {result.n}."
     )
     if not result.n_bound:
         return words if result.by == "altimeter" else f"{words} No epoch has a covariance of its height, so its total error has no bound."
-    risk = "" if result.risk_below_max is None else f"; largest risk of being below by more: {result.risk_below_max:.2g}"
+    risk = "" if result.risk_below_max is None else f"; largest risk of being below the path by more than that: {result.risk_below_max:.2g}"
     return (
-        f"{words} Bound of the vertical total error ({100 * level:.4g} %) inside it at {result.n_bound_inside} of {result.n_bound}{risk}."
+        f"{words} Bound of the vertical total error ({100 * level:.4g} %) inside ±{result.limit_m:.2f} m at {result.n_bound_inside} of "
+        f"{result.n_bound}{risk}."
     )
 
 

@@ -100,9 +100,9 @@ def heights(group: pl.DataFrame, followed: Followed, loaded: Loaded, flown: Flow
         "baro_off_m": indicated - altitude,
         "limit_v_m": limit,
     }
-    compared = _words(
-        path is not None, bool(np.isfinite(above_sea).any()), bool(np.isfinite(indicated).any()), (origin, undulation, n_impossible)
-    )
+    geometric = _geometry(bool(np.isfinite(above_sea).any()), undulation)
+    of_altimeter = _altimeter(bool(np.isfinite(pressure).any()), bool(np.isfinite(indicated).any()), origin)
+    compared = "" if path is None else f"Heights: {geometric}; {of_altimeter}.{_impossible(n_impossible)}"
     columns = pl.DataFrame({name: pl.Series(values, nan_to_null=True) for name, values in named.items()})
     return Heights(columns, altitude, indicated, above_sea, setting, origin, compared)
 
@@ -124,27 +124,25 @@ def _setting(group: pl.DataFrame, flown: Flown) -> tuple[Floats, Literal["given"
     return pl.Series(sent, nan_to_null=True).forward_fill().fill_null(float("nan")).to_numpy(), "broadcast", n_impossible
 
 
-def _words(has_path: bool, geometric: bool, indicated: bool, of: tuple[str, float, int]) -> str:
-    origin, undulation, n_impossible = of
-    if not has_path:
-        return ""
-    geometry = (
-        f"by geometry with an undulation of {undulation:+.1f} m, where the deviation holds the temperature of the air"
-        if geometric
-        else (
-            "not by geometry: the undulation is unknown (the file lacks a height of the runway; --undulation-m states it)"
-            if not math.isfinite(undulation)
-            else "not by geometry: the recording has no height above the ellipsoid"
-        )
-    )
-    altimeter = (
-        f"by the altimeter with the setting {'that was stated' if origin == 'given' else 'that the aircraft broadcasts'}"
-        if indicated
-        else "not by the altimeter: pressure altitude holds no setting, and none is broadcast (--setting-hpa states it), or there is no "
-        "pressure altitude"
-    )
-    strange = f" {n_impossible} broadcast settings are outside 800 to 1100 hPa and are not used." if n_impossible else ""
-    return f"Heights: {geometry}; {altimeter}.{strange}"
+def _geometry(compared: bool, undulation_m: float) -> str:
+    if compared:
+        return f"by geometry with an undulation of {undulation_m:+.1f} m, where the deviation holds the temperature of the air"
+    if not math.isfinite(undulation_m):
+        return "not by geometry: the undulation is unknown (the file lacks a height of the runway; --undulation-m states it)"
+    return "not by geometry: the recording has no height above the ellipsoid"
+
+
+def _altimeter(pressure: bool, compared: bool, origin: Literal["given", "broadcast"]) -> str:
+    if compared:
+        return f"by the altimeter with the setting {'that was stated' if origin == 'given' else 'that the aircraft broadcasts'}"
+    if not pressure:
+        unused = ", so the setting that was stated is not used" if origin == "given" else ""
+        return f"not by the altimeter: the recording has no pressure altitude{unused}"
+    return "not by the altimeter: pressure altitude holds no setting, and none is broadcast (--setting-hpa states it)"
+
+
+def _impossible(n: int) -> str:
+    return f" {n} broadcast settings are outside 800 to 1100 hPa and are not used." if n else ""
 
 
 def height_results(part: pl.DataFrame, path: VerticalPath, altitude_m: Floats) -> list[HeightResult]:
