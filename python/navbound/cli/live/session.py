@@ -397,7 +397,8 @@ def _ended(session: Session, settings: Settings, *, json: bool) -> None:
     repeated = sum(counters.get(name, 0) for name in ("n_waiting_duplicate", "n_duplicate"))
     sentence = (
         f"{session.n_epochs} epochs of {session.n_tracks} tracks, {session.n_transitions} transitions; "
-        f"refused: {refused or 'nothing'}; positions not used: {unusable or 'none'}; repeated times: {repeated:g}; session in {session.folder}"
+        f"refused: {refused or 'nothing'}; positions not used: {unusable or 'none'}; repeated times: {repeated:g}; "
+        f"session in {session.folder}"
     )
     if not session.n_epochs:
         sentence += f"; no epoch was judged: nothing of the source is read as {settings.format}; --format names what it sends"
