@@ -68,7 +68,7 @@ def test_levels_of_a_file_do_not_stand_in_the_way_of_its_positions(tmp_path: Pat
     assert (judged, evaluated) == (Path("out/station"), Path("out/evaluate-station"))
 
 
-def test_who_asks_for_sbas_is_told_how_its_levels_come() -> None:
+def test_who_asks_for_sbas_reads_how_its_levels_come() -> None:
     with pytest.raises(InputError, match=r"given takes .* SBAS service from its messages among the files"):
         monitor_of("sbas")
 
@@ -83,7 +83,7 @@ def test_a_file_without_accuracies_says_how_to_state_one(tmp_path: Path) -> None
     assert "(--map; in Python columns)" in words
 
 
-def test_a_stated_setting_without_pressure_altitude_is_not_asked_for_again() -> None:
+def test_a_stated_setting_without_pressure_altitude_is_not_requested_again() -> None:
     stated = heights._altimeter(pressure=False, compared=False, origin="given")
     assert stated == "not by the altimeter: the recording has no pressure altitude, so the setting that was stated is not used"
     assert "--setting-hpa" in heights._altimeter(pressure=True, compared=False, origin="broadcast")

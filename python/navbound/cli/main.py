@@ -159,13 +159,12 @@ def _end_by(surprise: BaseException) -> None:
 def _of_parser(refusal: Any) -> str:
     """The parser's refusal, with the value that was typed where it names none, and with what the argument is."""
     words: str = refusal.format_message()
-    parameter = getattr(refusal, "param", None)
+    parameter: Any = getattr(refusal, "param", None)
     meant = getattr(parameter, "help", None)
     if not meant:
         return words
     typed = _typed(parameter.opts)
-    is_absent = type(refusal).__name__ == "MissingParameter"
-    if is_absent or typed is None or typed in words:
+    if type(refusal).__name__ == "MissingParameter" or typed is None or typed in words:
         return f"{words.removesuffix('.')}: {meant}"
     return f"{parameter.opts[0]} = {typed} is not accepted: {words.partition(': ')[2] or words}; it is: {meant}"
 
@@ -175,8 +174,8 @@ def _typed(options: list[str]) -> str | None:
     arguments = sys.argv[1:]
     behind = [value for word, value in itertools.pairwise(arguments) if word in options]
     joined = [word.partition("=")[2] for word in arguments if word.partition("=")[0] in options and "=" in word]
-    found = [*behind, *joined]
-    return found[0] if len(found) == 1 else None
+    values = [*behind, *joined]
+    return values[0] if len(values) == 1 else None
 
 
 def _option(argument: str) -> str:

@@ -163,8 +163,9 @@ def _height_words(result: HeightResult, level: float) -> str:
         "geometry": "By geometry (the temperature of the air is in it)",
     }[result.by]
     words = (
-        f"{by}: {result.n} positions on the final approach are {result.mean_m:+.1f} m off the {result.path} path in the mean (positive above it), "
-        f"{result.least_m:+.1f} to {result.most_m:+.1f} m, RMS {result.rms_m:.1f} m; inside ±{result.limit_m:.2f} m (75 ft, standard) at "
+        f"{by}: {result.n} positions on the final approach are {result.mean_m:+.1f} m off the {result.path} path in the mean "
+        f"(positive above it), {result.least_m:+.1f} to {result.most_m:+.1f} m, RMS {result.rms_m:.1f} m; "
+        f"inside ±{result.limit_m:.2f} m (75 ft, standard) at "
         f"{result.n_inside} of {result.n}, inside what 99.7 % of vertical errors have to be below (AC 90-101A, standard; from "
         f"{result.required_m:.1f} m) at {result.n_inside_required} of {result.n}."
     )
