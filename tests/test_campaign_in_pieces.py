@@ -91,7 +91,7 @@ class Tracked:
         return {"x": array}
 
 
-def test_results_that_were_taken_are_given_up() -> None:
+def test_results_that_were_worked_off_are_freed() -> None:
     tracked = Tracked()
     for tile, result in enumerate(scale.in_order(tracked, range(20))):
         assert result["x"].tolist() == [tile] * 3

@@ -343,9 +343,9 @@ fn noise_on_a_hold_that_states_no_speed_after_flight_is_stale_as_the_hold_is() {
     let speed = |k: usize| if k < 101 { 70.0 } else { 0.0 };
     let reports: Vec<Report> =
         track(&positions, 0.0).into_iter().enumerate().map(|(k, each)| Report { speed_mps: speed(k), ..each }).collect();
-    let found = findings(&reports);
-    assert!(found[..104].iter().all(|f| *f == Finding::Plausible));
-    assert!(found[104..].iter().all(|f| *f == Finding::Stale), "{:?}", &found[100..110]);
+    let verdicts = findings(&reports);
+    assert!(verdicts[..104].iter().all(|f| *f == Finding::Plausible));
+    assert!(verdicts[104..].iter().all(|f| *f == Finding::Stale), "{:?}", &verdicts[100..110]);
     let standing = Limits { moving_mps: f64::INFINITY, ..LIMITS };
     assert!(judge(&reports, &standing).unwrap().iter().all(|j| j.finding == Finding::Plausible));
 }

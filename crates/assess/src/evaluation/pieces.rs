@@ -122,7 +122,7 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// Of which axis the effective size is wanted.
+    /// Of which axis the effective size is requested.
     ///
     /// # Errors
     /// [`OutOfDomain`] for another axis than 0 (east) and 1 (north).

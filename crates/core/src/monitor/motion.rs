@@ -92,7 +92,7 @@ const BRAKING_MPS2: f64 = 10.0;
 
 /// How far a position that stands may be from where it began to: noise of decimetres, and rounding \[m\]. An aircraft whose speed counts as
 /// moving needs 11 m to brake. Provenance: ours.
-const HELD_M: f64 = 5.0;
+const ABOUT_THE_FALL_M: f64 = 5.0;
 
 /// Where and when a reported speed fell.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -115,7 +115,7 @@ impl Fall {
     /// Whether a report is still where it was.
     fn holds(&self, report: &Report, unchanged: bool) -> bool {
         let [east, north] = east_north_m([self.lat_rad, self.lon_rad], [report.lat_rad, report.lon_rad]);
-        unchanged || (self.from_moving && hypot(east, north) <= HELD_M)
+        unchanged || (self.from_moving && hypot(east, north) <= ABOUT_THE_FALL_M)
     }
 }
 
@@ -161,8 +161,8 @@ impl Gone {
         // A position that does not change leaves no way to brake on, however long that took.
         let braking_m = (self.braked_mps * self.braked_mps - speed_mps * speed_mps) / (2.0 * BRAKING_MPS2);
         let falls = speed_mps + STANDS_MPS < left_mps || (unchanged && braking_m > limits.noise_m);
-        let held = self.fell.filter(|fall| fall.holds(report, unchanged));
-        self.fell = held.or_else(|| falls.then(|| Fall::at(report, self.braked_mps > limits.moving_mps)));
+        let unmoved = self.fell.filter(|fall| fall.holds(report, unchanged));
+        self.fell = unmoved.or_else(|| falls.then(|| Fall::at(report, self.braked_mps > limits.moving_mps)));
         // f64::max prefers a number to a NaN.
         self.braked_mps = speed_mps.max(left_mps);
         self.seen = Some(report.time);
