@@ -16,7 +16,7 @@ import pytest
 from rich.console import Console
 
 from conftest import Ended
-from navbound import scenario
+from navbound import kpi, scenario
 from navbound.cli import calls, lists, parts, printed, schema, verify
 from navbound.studies import registry
 
@@ -53,6 +53,17 @@ def test_the_shipped_scenarios_are_listed(navbound: Command) -> None:
     assert [row["name"] for row in rows] == scenario.shipped()
     assert {row["kind"] for row in rows} == set(scenario.KINDS)
     assert "beijing-shanghai-jammed" in navbound("scenarios").stdout
+
+
+def test_each_source_of_a_service_level_is_printed_once_and_every_level_names_its_own(navbound: Command) -> None:
+    printed_words = " ".join(navbound("levels").stdout.split())
+    levels = kpi.levels().values()
+    sources = list(dict.fromkeys(level.source for level in levels))
+    assert len(sources) < len(levels)
+    for number, source in enumerate(sources, 1):
+        assert printed_words.count(f"[{number}] {source}") == 1
+        # Once for each level, and once at the source.
+        assert printed_words.count(f"[{number}]") == 1 + sum(level.source == source for level in levels)
 
 
 PROCEDURES = Path(__file__).parent / "procedures" / "KDEN_H26-Z.txt"

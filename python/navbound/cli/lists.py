@@ -44,13 +44,16 @@ def levels_command(json: Json = False) -> None:
         sys.stdout.write(encoder.dumps([level.model_dump() for level in levels], indent=1) + "\n")
         return
     rows = []
+    sources = list(dict.fromkeys(level.source for level in levels))
     for level in levels:
         vertical, accuracy_v = ("-" if value is None else f"{value:g}" for value in (level.val_m, level.accuracy_v_m))
         accuracy = f"{level.accuracy_h_m:g} / {accuracy_v}"
         numbers = (f"{level.hal_m:g}", vertical, accuracy, f"{level.tta_s:g}")
-        rows.append((level.id, level.title, *numbers, level.provenance["hal_m"], level.source))
+        rows.append((level.id, level.title, *numbers, level.provenance["hal_m"], f"[{sources.index(level.source) + 1}]"))
     headings = ("id", "operation", "HAL, m", "VAL, m", "accuracy H/V, m", "time to alert, s", "limits", "source")
     print_list("Service levels", headings, rows)
+    for number, source in enumerate(sources, 1):
+        out_console.print(f"\n[{number}] {source}", markup=False, highlight=False)
 
 
 def scenarios_command(json: Json = False) -> None:
