@@ -19,6 +19,7 @@ const LIMITS: Limits = Limits {
     moving_mps: 15.0,
     stale_after_s: 2.0,
     settle_s: 30.0,
+    period_s: 0.0,
 };
 const EARTH_M: f64 = 6_371_000.0;
 
@@ -27,7 +28,7 @@ fn at(second: f64) -> GpsTime {
 }
 
 fn report(second: f64, speed_mps: f64) -> Report {
-    Report { time: at(second), fixed: None, lat_rad: 0.8, lon_rad: 0.1, speed_mps, variance_m2: 4.0 }
+    Report { time: at(second), fixed: None, lat_rad: 0.8, lon_rad: 0.1, speed_mps, variance_m2: 4.0, height: None }
 }
 
 fn place(second: f64, north_m: f64, variance_m2: f64) -> Place {
@@ -62,20 +63,26 @@ fn a_speed_that_falls_just_as_fast_as_braking_has_not_fallen() {
         gone.step(&report(after_s, to_mps), unchanged, &LIMITS);
         // What braking leaves is what the next report is compared with, where the speed is below it.
         assert_eq!(gone.braked_mps, to_mps.max(from_mps - 10.0 * after_s));
-        gone.fell
+        gone.fell.is_some()
     };
     // 70 m/s less ten and the two of the noise.
     assert!(!fell(70.0, 58.0, 1.0, false) && fell(70.0, 57.75, 1.0, false) && !fell(70.0, 48.0, 2.0, false));
     // Ten seconds later the speed may be any, but the position that stays leaves 80 m to brake on.
     assert!(!fell(50.0, 30.0, 10.0, true) && fell(50.0, 29.75, 10.0, true) && !fell(50.0, 29.75, 10.0, false));
-    // What has fallen stays so until the position changes.
-    let mut gone = Gone::default();
-    for (second, speed_mps, unchanged, fell) in
-        [(0.0, 70.0, false, false), (1.0, 0.0, true, true), (50.0, 0.0, true, true), (51.0, 0.0, false, false), (52.0, 0.0, true, false)]
-    {
-        gone.step(&report(second, speed_mps), unchanged, &LIMITS);
-        assert_eq!(gone.fell, fell, "{second}");
-    }
+    // What has fallen stays so until the position has left by five metres; of a vehicle that need not have moved, until it changes.
+    let after = |from_mps: f64, north_m: f64| {
+        let mut gone = Gone::default();
+        gone.step(&report(0.0, from_mps), false, &LIMITS);
+        for (second, north_m, unchanged) in [(1.0, 0.0, true), (50.0, 0.0, true), (51.0, north_m, false), (52.0, north_m, true)] {
+            let lat_rad = 0.8 + north_m / EARTH_M;
+            gone.step(&Report { lat_rad, ..report(second, 0.0) }, unchanged, &LIMITS);
+            assert!(second > 50.0 || gone.fell.is_some(), "{second}");
+        }
+        gone.fell.is_some()
+    };
+    // The radius of the meridian there is within one per cent of the sphere's.
+    assert!(after(70.0, 4.9) && !after(70.0, 5.1) && after(15.5, 4.9));
+    assert!(!after(15.0, 0.1));
 }
 
 #[test]
@@ -87,14 +94,18 @@ fn a_repeat_is_reported_at_each_of_its_limits() {
     assert_eq!([find(15.0, 1.0, none), find(15.5, 1.0, none)], [Plausible, Repeated]);
     assert_eq!([find(15.0, 9.0, none), find(15.5, 2.0, none), find(15.5, 2.0 + 1e-9, none)], [Plausible, Repeated, Stale]);
     // Silent ones are doubted once they last.
-    let fell = Gone { fell: true, ..none };
+    let mut fell = none;
+    fell.step(&report(-1.0, 70.0), false, &LIMITS);
+    fell.step(&report(0.0, 0.0), true, &LIMITS);
+    fell = Gone { fell: fell.fell, ..none };
+    assert!(fell.fell.is_some());
     assert_eq!([find(f64::NAN, 2.0, none), find(f64::NAN, 2.5, none)], [Plausible, Stale]);
     assert_eq!([find(0.0, 2.0, fell), find(0.0, 2.5, fell), find(0.0, 2.5, none)], [Plausible, Stale, Plausible]);
     // Its own way is further than 80 m and ten seconds of its speed.
     let way = |way_m: f64| Gone { way_m, ..none };
     assert_eq!([find(4.0, 1.0, way(120.0)), find(4.0, 1.0, way(120.5)), find(f64::NAN, 1.0, way(80.5))], [Plausible, Stale, Stale]);
     let at_rest = Limits { moving_mps: f64::INFINITY, ..LIMITS };
-    assert_eq!(repeated(&report(9.0, f64::NAN), at(0.0), &Gone { way_m: 1e6, fell: true, ..none }, &at_rest), Plausible);
+    assert_eq!(repeated(&report(9.0, f64::NAN), at(0.0), &Gone { way_m: 1e6, ..fell }, &at_rest), Plausible);
 }
 
 #[test]
