@@ -83,6 +83,11 @@ def truth_of(rows: list[dict[str, Any]], *, tracks: bool) -> list[dict[str, Any]
     ]
 
 
+def contradicted(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Three instants have two places: most pieces know no such row."""
+    return [each for k, row in enumerate(rows) for each in ([row, row | {"latitude": 47.0}] if k in {17, 120, 121} else [row])]
+
+
 ROUTE = "name,lat_deg,lon_deg\n" + "\n".join(
     f"{name},{lat:.6f},{lon:.6f}"
     for name, (lat, lon) in zip("AB", [place(48.9958, 2.5529, -200.0, -21_000.0), place(48.9958, 2.5529, 200.0, 3_000.0)], strict=True)
@@ -100,6 +105,8 @@ def cases(folder: Path) -> dict[str, tuple[Path, dict[str, Any]]]:
         "truth": text(truth_of(rows, tracks=True)),
         "one": text(without(one, "truth_lat", "truth_lon")),
         "true": text(truth_of(one, tracks=False)),
+        "two": text(contradicted(plain)),
+        "twice": text(contradicted(truth_of(rows, tracks=True))),
         "still": text(
             [row | {"latitude": f"{48.0 + 1e-6 * (k % 7):.7f}", "longitude": 2.5, "groundspeed": 0.0} for k, row in enumerate(plain[:60])]
         ),
@@ -115,6 +122,8 @@ def cases(folder: Path) -> dict[str, tuple[Path, dict[str, Any]]]:
         "own truth on approaches": (at["own"], {"path": "LFPG/08R,LFPG/09L"}),
         "own truth": (at["own"], {}),
         "truth of each": (at["plain"], {"truth": at["truth"], "truth_tolerance_s": 0.3}),
+        "positions that contradict each other": (at["two"], {"truth": at["truth"], "truth_tolerance_s": 0.3}),
+        "truth that contradicts itself": (at["plain"], {"truth": at["twice"], "truth_tolerance_s": 0.3}),
         "truth on a route": (at["plain"], {"truth": at["truth"], "truth_tolerance_s": 0.3, "path": at["route"]}),
         "truth of all": (at["one"], {"truth": at["true"], "truth_tolerance_s": 0.3}),
         "fixed": (at["still"], {"truth": "4269200.0,186400.0,4716900.0"}),
@@ -128,6 +137,8 @@ CASES = (
     "own truth on approaches",
     "own truth",
     "truth of each",
+    "positions that contradict each other",
+    "truth that contradicts itself",
     "truth on a route",
     "truth of all",
     "fixed",

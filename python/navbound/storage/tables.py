@@ -37,18 +37,21 @@ def tracks(table: Table, names: Sequence[str]) -> Iterator[pl.DataFrame]:
 
 
 def whole_tracks(parts: Iterator[pl.DataFrame]) -> Iterator[pl.DataFrame]:
-    """Pieces in the order of tracks, cut anew where a track begins."""
+    """Pieces in the order of tracks, cut anew where a track begins.
+
+    A column that a piece lacks is null there: rows that contradict nothing have no status of their own.
+    """
     waiting = list[pl.DataFrame]()
     for part in parts:
         track = part["track"]
         begins = part.height - int(track.rle()[-1]["len"])
         if begins or (waiting and waiting[-1]["track"][-1] != track[0]):
             done = [*waiting, part[:begins]]
-            yield pl.concat([each for each in done if each.height], rechunk=True)
+            yield pl.concat([each for each in done if each.height], how="diagonal", rechunk=True)
             waiting = []
         waiting.append(part[begins:])
     if waiting:
-        yield pl.concat(waiting, rechunk=True)
+        yield pl.concat(waiting, how="diagonal", rechunk=True)
 
 
 def numbers(table: Table, name: str) -> NDArray[np.float64]:
