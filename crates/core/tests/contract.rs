@@ -41,7 +41,7 @@ fn epochs() -> Vec<Epoch> {
     let mut all = Vec::new();
     for (k, factor) in [round, usual, thin].into_iter().enumerate() {
         for (j, offset) in offsets.into_iter().enumerate() {
-            let course = 0.4 + 1.3 * (k * offsets.len() + j) as f64;
+            let course = (0.4 + 1.3 * (k * offsets.len() + j) as f64).rem_euclid(std::f64::consts::TAU);
             all.push(epoch(course, -0.05 * (j as f64 - 1.0), offset, factor));
         }
     }
@@ -54,7 +54,7 @@ fn epochs() -> Vec<Epoch> {
 fn turned(e: &Epoch, angle: f64) -> Epoch {
     let r = rotation(angle);
     Epoch {
-        course: e.course.map(|c| Radians::new(c.rad() + angle)),
+        course: e.course.map(|c| Radians::new((c.rad() + angle).rem_euclid(std::f64::consts::TAU))),
         offset: e.offset.map(|d| Displacement::from_vector(r * d.vector())),
         mean: e.mean.map(|d| Displacement::from_vector(r * d.vector())),
         covariance: e.covariance.map(|c| Covariance::claim_symmetric(r * c.matrix() * r.transpose())),

@@ -73,7 +73,9 @@ class Approaches:
     Attributes
     ----------
     epochs : DataFrame
-        Every epoch between the first and the last point of an approach, ``track`` naming the approach, with the flight technical error.
+        Every epoch between the first point of an approach and its end, ``track`` naming the approach, with the flight technical error. It
+        ends with its last point inside the gates; where the aircraft leaves the centreline after that, where it has passed
+        ``before_min_m`` or comes no nearer to the threshold.
     cross_track : list of CrossTrack
         Statistics of the points inside the gates, runway by runway; then once more without held positions where there were any.
     runways : list of Runway
@@ -140,13 +142,16 @@ def seek(epochs: Table, runways: Sequence[Runway] | None = None, gates: Gates | 
     if runways is None:
         runways = near_cells([_low_cells(piece, gates, ruled) for piece in pieces(epochs, _POINTS)])
     names = [r.name for r in runways]
-    gated = [_gated(piece, runways, gates, ruled) for piece in pieces(epochs, [*_POINTS, "track", "time_ns", "status"])]
-    segments, left_out = _segments(pl.concat(gated), gates, names) if runways and gated else (pl.DataFrame(), [])
+    near = [_near(piece, runways, gates, ruled) for piece in pieces(epochs, [*_POINTS, "track", "time_ns", "status"])]
+    points = pl.concat(near) if runways and near else pl.DataFrame()
+    segments, left_out = (
+        _segments(points.filter("gated").drop("gated"), gates, names) if runways and near else (pl.DataFrame(), list[str]())
+    )
     notes += left_out
     if segments.is_empty():
         return Landings(pl.DataFrame(), [], [], {}, notes)
     segments = segments.with_columns(pl.col("runway").replace_strict(dict(enumerate(names)), return_dtype=pl.String).alias("runway_name"))
-    approaches = _named(segments)
+    approaches = _with_ends(_named(segments), points.filter(~pl.col("gated")), gates)
     used = [r for r in runways if r.name in set(approaches["runway_name"])]
     return Landings(approaches, _statistics(segments), used, dict(approaches.select("approach", "track").iter_rows()), notes)
 
@@ -175,8 +180,8 @@ def _low_cells(epochs: pl.DataFrame, gates: Gates, ruled: _Ruled) -> pl.DataFram
     return cells(points.lat_rad[low], points.lon_rad[low])
 
 
-def _gated(epochs: pl.DataFrame, runways: Sequence[Runway], gates: Gates, ruled: _Ruled) -> pl.DataFrame:
-    """Points inside the gates of any runway, with their track, time and status."""
+def _near(epochs: pl.DataFrame, runways: Sequence[Runway], gates: Gates, ruled: _Ruled) -> pl.DataFrame:
+    """Points inside the gates of any runway, and those beside its last mile, with their track, time and status."""
     points = _Points.of(epochs)
     gated = [_gate(points, runway, index, gates, ruled) for index, runway in enumerate(runways)]
     rows = epochs.select("track", "time_ns", "status").with_row_index("row")
@@ -221,7 +226,7 @@ def _missing_rules(epochs: Table, gates: Gates) -> list[str]:
 
 
 def _gate(points: _Points, runway: Runway, index: int, gates: Gates, ruled: _Ruled) -> pl.DataFrame:
-    """Points inside the gates of one runway: row of the epoch table, distance before the threshold, cross-track distance."""
+    """Points inside the gates of one runway and beside its last mile: row of the epoch table, distances before the threshold and across."""
     selected = _roughly(points, runway, gates)
     feet = runway.centreline.project(points.lat_rad[selected], points.lon_rad[selected])
     before = -feet.along_m
@@ -234,25 +239,33 @@ def _gate(points: _Points, runway: Runway, index: int, gates: Gates, ruled: _Rul
         inside &= points.altitude_m[selected] < ceiling
     if gates.descending and ruled.vertical_rate:
         inside &= points.vertical_rate_mps[selected] < 0
+    beside = ~inside & (before > gates.before_min_m) & (before <= gates.lands_within_m) & (np.abs(feet.cross_m) < _STRAYS_M)
+    kept = inside | beside
     return pl.DataFrame(
         {
-            "row": pl.Series(selected[inside], dtype=pl.UInt32),
-            "runway": pl.Series([index] * int(inside.sum()), dtype=pl.Int64),
-            "before_m": before[inside],
-            "cross_m": feet.cross_m[inside],
+            "row": pl.Series(selected[kept], dtype=pl.UInt32),
+            "runway": pl.Series([index] * int(kept.sum()), dtype=pl.Int64),
+            "before_m": before[kept],
+            "cross_m": feet.cross_m[kept],
+            "gated": inside[kept],
         }
     )
 
 
+_STRAYS_M = 3.0 * METRES_PER_NM
+"""How far from the centreline an aircraft is followed that leaves it in the last mile; 2 RNP of 1 NM is less. Provenance: ours."""
+
+
 def _roughly(points: _Points, runway: Runway, gates: Gates) -> NDArray[np.int64]:
-    """Rows that may lie inside the gates: a flat map, off by some 10 m at six miles, with 300 m and 300 m per 10 km to spare."""
+    """Rows that may lie inside the gates or beside the last mile: a flat map, off by 10 m at six miles, with 300 m and 3 % to spare."""
     course, r = runway.course_rad, 6.371e6
     north = (points.lat_rad - runway.lat_rad) * r
     east = ((points.lon_rad - runway.lon_rad + np.pi) % (2 * np.pi) - np.pi) * r * math.cos(runway.lat_rad)
     before = -(north * math.cos(course) + east * math.sin(course))
     cross = east * math.cos(course) - north * math.sin(course)
     spare = 300.0 + 0.03 * gates.before_max_m
-    close = (before > gates.before_min_m - spare) & (before < gates.before_max_m + spare) & (np.abs(cross) < gates.cross_max_m + spare)
+    wide = np.where(before < gates.lands_within_m + spare, max(_STRAYS_M, gates.cross_max_m), gates.cross_max_m)
+    close = (before > gates.before_min_m - spare) & (before < gates.before_max_m + spare) & (np.abs(cross) < wide + spare)
     return np.flatnonzero(close)
 
 
@@ -317,7 +330,10 @@ def _left_out(failed: pl.DataFrame, accepted: pl.DataFrame, names: list[str]) ->
 def _named(segments: pl.DataFrame) -> pl.DataFrame:
     """One row an approach: ``3944ed LFPG/08R``, with a count when a track lands there again."""
     approaches = segments.group_by("segment").agg(
-        pl.col("track").first(), pl.col("runway_name").first(), start=pl.col("time_ns").min(), end=pl.col("time_ns").max()
+        pl.col("track", "runway", "runway_name").first(),
+        start=pl.col("time_ns").min(),
+        end=pl.col("time_ns").max(),
+        nearest_m=pl.col("before_m").min(),
     )
     approaches = approaches.sort("track", "start").with_columns(again=pl.int_range(1, pl.len() + 1).over("track", "runway_name"))
     name = pl.concat_str("track", pl.lit(" "), "runway_name")
@@ -326,8 +342,25 @@ def _named(segments: pl.DataFrame) -> pl.DataFrame:
     )
 
 
+def _with_ends(approaches: pl.DataFrame, beside: pl.DataFrame, gates: Gates) -> pl.DataFrame:
+    """Approaches to their ends: who leaves the centreline in the last mile is judged while it comes nearer to the threshold."""
+    of = {key: rows.sort("time_ns") for key, rows in beside.group_by("track", "runway")}
+    last = approaches.select("track", "runway", "end", "nearest_m").iter_rows()
+    ends = [_end(of.get((track, runway), beside.clear()), at_ns, nearest_m, gates) for track, runway, at_ns, nearest_m in last]
+    return approaches.with_columns(pl.Series("end", ends, dtype=pl.Int64)).drop("runway", "nearest_m")
+
+
+def _end(beside: pl.DataFrame, last_ns: int, nearest_m: float, gates: Gates) -> int:
+    """The last time of one approach [GPS ns]."""
+    for time_ns, before_m in beside.filter(pl.col("time_ns") > last_ns).select("time_ns", "before_m").iter_rows():
+        if time_ns - last_ns > gates.gap_max_s * 1e9 or before_m > nearest_m:
+            break
+        last_ns, nearest_m = time_ns, before_m
+    return last_ns
+
+
 def _between(epochs: pl.DataFrame, approaches: pl.DataFrame, runways: dict[str, Runway]) -> pl.DataFrame:
-    """Every epoch from the first to the last point of an approach, inside the gates or not: a gate must not hide a deviation."""
+    """Every epoch from the first point of an approach to its end, inside the gates or not: a gate must not hide a deviation."""
     judged = epochs.join(approaches.select("track", "approach", "runway_name", "start", "end"), on="track")
     judged = judged.filter(pl.col("time_ns").is_between(pl.col("start"), pl.col("end"))).sort("approach", "time_ns")
     parts = list[pl.DataFrame]()

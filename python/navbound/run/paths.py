@@ -119,7 +119,8 @@ def _approach_path(epochs: Table, approaches: Landings, gates: Gates, n_recorded
     words = [
         f"Path: the centreline through the runway ends of the shipped table (OurAirports), {gates.before_max_m / METRES_PER_NM:g} to "
         f"{gates.before_min_m / METRES_PER_NM:g} NM before the landing threshold; {n} approaches.",
-        f"Judged are all epochs from the first to the last point of an approach, {epochs.height} of {n_recorded} recorded; "
+        f"Judged are all epochs from the first to the last point of an approach, {epochs.height} of {n_recorded} recorded, and where an "
+        "aircraft leaves the centreline in the last mile those after it while it comes nearer to the threshold; "
         "what came before the first point is not. The path is the extended centreline, not a coded procedure: its own error counts as "
         "flight technical error.",
     ]
