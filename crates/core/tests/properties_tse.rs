@@ -34,7 +34,7 @@ fn risk_at(bound: f64, fte: f64, sigma: f64) -> f64 {
 /// A lateral situation: offset, covariance, course.
 fn situations() -> impl Strategy<Value = (Displacement<Enu>, Covariance<Enu>, f64)> {
     let part = || -30.0..30.0_f64;
-    (part(), part(), 0.01..40.0_f64, 0.01..40.0_f64, 0.0..6.3_f64, 0.0..6.3_f64).prop_map(|(e, n, a, b, axis, course)| {
+    (part(), part(), 0.01..40.0_f64, 0.01..40.0_f64, 0.0..6.3_f64, 0.0..core::f64::consts::TAU).prop_map(|(e, n, a, b, axis, course)| {
         let (s, c) = axis.sin_cos();
         let turn = Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0);
         let variances = Matrix3::from_diagonal(&Vector3::new(a * a, b * b, 1.0));
@@ -120,7 +120,7 @@ proptest! {
     #[test]
     fn reversing_the_course_turns_the_sign_and_nothing_else((p, cov, course) in situations(), q in risks()) {
         let ahead = tse::project(&p, &cov, Radians::new(course)).unwrap();
-        let back = tse::project(&p, &cov, Radians::new(course + core::f64::consts::PI)).unwrap();
+        let back = tse::project(&p, &cov, Radians::new(course - core::f64::consts::PI)).unwrap();
         prop_assert!((ahead.deviation.fte().m() + back.deviation.fte().m()).abs() <= 1e-13 * p.vector().norm());
         let risk = Risk::new(q).unwrap();
         let (a, b) = (tse::exact(ahead.deviation, risk).m(), tse::exact(back.deviation, risk).m());
