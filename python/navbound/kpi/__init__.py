@@ -17,6 +17,7 @@ from navbound.errors import InputError
 from navbound.kpi import records
 from navbound.kpi.catalogue import level, levels, rnp, selected_levels
 from navbound.kpi.slots import Slots
+from navbound.kpi.stated import LEVELS, Counts, levels_that_count
 from navbound.kpi.subsets import RangeTable, StanfordEsa, SubsetOptions, n_bins, stanford_esa, with_subsets
 from navbound.kpi.tables import FLOATS, Table, codes_of, frame_of, period_of
 from navbound.records.performance import Level, Performance, StanfordBins, StanfordCounts
@@ -170,7 +171,8 @@ def evaluate(
     ----------
     table : DataFrame or mapping of columns, or a sequence of such tables that follow each other in time
         ``time_ns`` and ``hpl_m``; as far as known ``vpl_m``, errors ``nse_e_m nse_n_m nse_u_m`` (or ``hpe_m vpe_m``), ``status``,
-        ``reason``, ``mode``, ``n_sv``. A row without ``hpl_m``, or with another ``status`` than ``ok``, is an epoch without a solution.
+        ``reason``, ``mode``, ``n_sv``. A row without ``hpl_m``, or with another ``status`` than ``ok``, is an epoch without a solution;
+        a ``degraded`` one whose error is above its level has the level that it misleads by.
     levels : names or Level
         From :func:`levels`, or of your own; names may be joined by commas.
     period_s : float, optional
@@ -262,7 +264,7 @@ class Campaign:
         self._modes: dict[str, int] = {}
         self._reasons: dict[str, int] = {}
         self._gravest = pl.DataFrame(schema=records.EVENT_SCHEMA)
-        self._n_bad_levels = 0
+        self._counts = Counts()
         self._n_shared = 0
         self._slots = Slots(int(times[0]), max(1, round(1e9 * self.period_s)), self.levels)
         self._core = _core.KpiCampaign(
@@ -291,10 +293,10 @@ class Campaign:
         InputError
             A missing column, times that fall, a number outside its domain.
         """
-        columns, n_bad = self._columns(frame_of(table))
+        columns, counts = self._columns(frame_of(table))
         self._slots.require_later(columns)
         one_each = self._slots.worst(columns)
-        self._n_bad_levels += n_bad
+        self._counts += counts
         kept = self._keep(self._core.add(one_each))
         self._n_shared += len(columns["time_ns"]) - len(one_each["time_ns"])
         return kept
@@ -363,9 +365,7 @@ class Campaign:
         return table
 
     def _notes(self) -> list[str]:
-        notes = []
-        if self._n_bad_levels:
-            notes.append(f"{self._n_bad_levels} rows hold a protection level that is not positive and finite; it counts as none.")
+        notes = self._counts.words()
         if self._n_shared:
             notes.append(
                 f"{self._n_shared} rows share an epoch of the grid, one every {self.period_s:g} s, with another: of each epoch the "
@@ -375,15 +375,15 @@ class Campaign:
             notes.append(f"Sampled every {self.period_s:g} s: the {self.window_s:g} s continuity window is one epoch and not meaningful.")
         return notes
 
-    def _columns(self, frame: pl.DataFrame) -> tuple[dict[str, NDArray[Any]], int]:
+    def _columns(self, frame: pl.DataFrame) -> tuple[dict[str, NDArray[Any]], Counts]:
         numbers = frame.select(pl.col(name).fill_null(np.nan) for name in FLOATS)
-        bad = {name: ~numbers[name].is_nan() & ~((numbers[name] > 0) & numbers[name].is_finite()) for name in ("hpl_m", "vpl_m")}
+        bad = {name: ~numbers[name].is_nan() & ~((numbers[name] > 0) & numbers[name].is_finite()) for name in LEVELS}
         columns: dict[str, NDArray[Any]] = {name: np.ascontiguousarray(numbers[name].to_numpy()) for name in FLOATS}
-        solved = (frame["status"] == "ok").to_numpy()
-        for name in ("hpl_m", "vpl_m"):
-            columns[name] = np.where(solved & ~bad[name].to_numpy(), columns[name], np.nan)
+        for name, refused in bad.items():
+            columns[name] = np.where(refused.to_numpy(), np.nan, columns[name])
+        misleading = levels_that_count(columns, frame["status"], vertical=any(each.val_m is not None for each in self.levels))
         columns["time_ns"] = np.ascontiguousarray(frame["time_ns"].to_numpy())
         columns["n_sv"] = np.ascontiguousarray(frame["n_sv"].fill_null(-1).to_numpy())
         columns["mode"] = codes_of(frame["mode"], self._modes)
         columns["reason"] = codes_of(frame["reason"], self._reasons)
-        return columns, int((bad["hpl_m"] | bad["vpl_m"]).sum())
+        return columns, Counts(n_bad_levels=int((bad["hpl_m"] | bad["vpl_m"]).sum()), n_degraded=int(misleading.sum()))

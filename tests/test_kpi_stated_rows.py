@@ -1,0 +1,92 @@
+"""An error above a level that a row states is never lost, whatever else the row lacks or says."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+import navbound
+from navbound import kpi
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from navbound.records.run import Verdict
+
+N = 100
+T0 = 1_400_000_000
+HEADER = "time,e,n,u,hpl,vpl,n_sv,status,reason_id"
+HEALTHY = "0.3,0.4,1.0,15,22,10,ok,"
+"""Errors 0.5 m and 1 m; LPV-200 limits 40 m and 35 m."""
+
+
+def verdict(folder: Path, row: str, n_rows: int = 3, level: str = "LPV-200") -> Verdict:
+    """Of a healthy table some of whose rows are another."""
+    rows = [row if 20 <= k < 20 + n_rows else HEALTHY for k in range(N)]
+    columns = HEADER.replace(",e,n,u,", ",nse_e_m,nse_n_m,nse_u_m,").replace("hpl,vpl", "hpl_m,vpl_m")
+    text = "\n".join([columns, *(f"{T0 + k},{each}" for k, each in enumerate(rows))])
+    (folder / "levels.csv").write_text(text + "\n", encoding="utf-8")
+    return navbound.evaluate([folder / "levels.csv"], levels=level).summary.verdict
+
+
+def test_the_healthy_table_is_inside(tmp_path: Path) -> None:
+    assert verdict(tmp_path, HEALTHY).id == "inside"
+
+
+@pytest.mark.parametrize(
+    "row",
+    [
+        "100,0,1,15,22,10,degraded,few_satellites",
+        "100,0,1,15,22,10,degraded,",
+        "100,0,1,15,22,10,ok,few_satellites",
+        "0,0,40,15,22,10,degraded,few_satellites",
+        "100,0,1,15,22,10,ok,",
+    ],
+)
+def test_an_error_above_the_level_of_a_degraded_row_is_a_hazard(row: str, tmp_path: Path) -> None:
+    found = verdict(tmp_path, row)
+    assert found.id == "not_believable"
+    assert "Hazardously misleading information: LPV-200 at 3 epochs" in found.words
+
+
+@pytest.mark.parametrize(("row", "id_"), [("0.3,0.4,1,15,22,10,degraded,few_satellites", "inside"), ("100,0,1,,,10,degraded,", "inside")])
+def test_a_degraded_row_without_an_error_above_a_level_has_no_level(row: str, id_: str, tmp_path: Path) -> None:
+    found = verdict(tmp_path, row)
+    assert (found.id, found.n_judged) == (id_, N - 3)
+    assert "3 without a level" in found.words
+
+
+@pytest.mark.parametrize("status", ["not_available", "invalid_input", "RAIM FAIL", "0", "", "NO FIX"])
+def test_a_row_that_says_that_there_is_no_level_has_none(status: str, tmp_path: Path) -> None:
+    found = verdict(tmp_path, f"100,0,1,15,22,10,{status},")
+    assert (found.id, found.n_judged) == ("inside", N - 3)
+
+
+def table(**changed: Any) -> dict[str, Any]:
+    """Ten healthy epochs, with other numbers in the fourth."""
+    columns: dict[str, Any] = {
+        "time_ns": np.arange(10) * 1_000_000_000,
+        **{
+            name: np.full(10, value)
+            for name, value in (("nse_e_m", 0.3), ("nse_n_m", 0.4), ("nse_u_m", 1.0), ("hpl_m", 15.0), ("vpl_m", 22.0))
+        },
+        "status": np.array(["ok"] * 10, dtype=object),
+    }
+    for name, value in changed.items():
+        columns[name][3] = value
+    return columns
+
+
+def test_a_degraded_epoch_is_available_only_where_it_misleads() -> None:
+    misled = kpi.evaluate(table(status="degraded", nse_e_m=16.0), "LPV-200")
+    assert (misled.n_mi_epochs, misled.levels[0].n_mi_epochs, misled.levels[0].n_hazard_epochs) == (1, 1, 0)
+    assert any("1 row is degraded and states a protection level that its error exceeds" in note for note in misled.notes)
+    kept = kpi.evaluate(table(status="degraded", nse_e_m=14.0), "LPV-200")
+    assert (kept.n_mi_epochs, kept.levels[0].n_available, kept.n_no_solution) == (0, 9, 1)
+
+
+def test_a_vertical_that_no_level_limits_makes_no_degraded_epoch_available() -> None:
+    result = kpi.evaluate(table(status="degraded", nse_u_m=100.0), kpi.rnp(0.3, tta_s=10.0))
+    assert (result.levels[0].n_available, result.n_no_solution) == (9, 1)
