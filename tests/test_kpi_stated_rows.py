@@ -90,3 +90,38 @@ def test_a_degraded_epoch_is_available_only_where_it_misleads() -> None:
 def test_a_vertical_that_no_level_limits_makes_no_degraded_epoch_available() -> None:
     result = kpi.evaluate(table(status="degraded", nse_u_m=100.0), kpi.rnp(0.3, tta_s=10.0))
     assert (result.levels[0].n_available, result.n_no_solution) == (9, 1)
+
+
+@pytest.mark.parametrize("errors", ["100,,1", ",-100,1", "100,nan,1", "100,NaN,1"])
+def test_half_an_error_above_the_level_is_a_hazard(errors: str, tmp_path: Path) -> None:
+    found = verdict(tmp_path, f"{errors},15,22,10,ok,")
+    assert found.id == "not_believable"
+    assert "Hazardously misleading information: LPV-200 at 3 epochs" in found.words
+
+
+def test_half_an_error_within_the_level_is_not_known() -> None:
+    result = kpi.evaluate(table(nse_n_m=np.nan, nse_e_m=14.9), "LPV-200")
+    assert result.axes[0].error_m is not None
+    assert (result.n_mi_epochs, result.axes[0].error_m.n, result.n_solution) == (0, 9, 10)
+
+
+@pytest.mark.parametrize("errors", ["inf,0,1", "1e300,0,1", "100m,0,1", '"100,0",0,1', "0,-inf,1", "0,0,inf", "0,0,1e5 m"])
+def test_an_error_that_is_written_and_no_number_shows_nothing(errors: str, tmp_path: Path) -> None:
+    found = verdict(tmp_path, f"{errors},15,22,10,ok,")
+    assert found.id == "not_shown"
+    assert "the file states an error that is no finite number, so that it may be of any size, in 3 rows" in found.words
+    # A row that has no level claims nothing.
+    assert verdict(tmp_path, f"{errors},15,22,10,not_available,").id == "inside"
+
+
+@pytest.mark.parametrize("levels", ["0,22", "-1,22", "15,0", "15m,22"])
+def test_no_level_beside_ok_shows_nothing(levels: str, tmp_path: Path) -> None:
+    found = verdict(tmp_path, f"100,0,1,{levels},10,ok,")
+    assert found.id in {"not_shown", "not_believable"}
+    assert "a protection level that is none (0 or less, or no number) beside the status ok, in 3 rows" in found.words
+    assert verdict(tmp_path, f"0,0,1,{levels},10,not_available,").id == "inside"
+
+
+@pytest.mark.parametrize("row", ["nan,,1,15,22,10,ok,", "0,0,1,inf,22,10,ok,", "0,0,1,,,10,ok,"])
+def test_what_is_not_written_is_no_fault_of_the_file(row: str, tmp_path: Path) -> None:
+    assert verdict(tmp_path, row).id == "inside"

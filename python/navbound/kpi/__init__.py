@@ -17,7 +17,7 @@ from navbound.errors import InputError
 from navbound.kpi import records
 from navbound.kpi.catalogue import level, levels, rnp, selected_levels
 from navbound.kpi.slots import Slots
-from navbound.kpi.stated import LEVELS, Counts, levels_that_count
+from navbound.kpi.stated import LEVELS, Counts, levels_that_count, with_least_errors
 from navbound.kpi.subsets import RangeTable, StanfordEsa, SubsetOptions, n_bins, stanford_esa, with_subsets
 from navbound.kpi.tables import FLOATS, Table, codes_of, frame_of, period_of
 from navbound.records.performance import Level, Performance, StanfordBins, StanfordCounts
@@ -381,6 +381,7 @@ class Campaign:
         columns: dict[str, NDArray[Any]] = {name: np.ascontiguousarray(numbers[name].to_numpy()) for name in FLOATS}
         for name, refused in bad.items():
             columns[name] = np.where(refused.to_numpy(), np.nan, columns[name])
+        with_least_errors(columns)
         misleading = levels_that_count(columns, frame["status"], vertical=any(each.val_m is not None for each in self.levels))
         columns["time_ns"] = np.ascontiguousarray(frame["time_ns"].to_numpy())
         columns["n_sv"] = np.ascontiguousarray(frame["n_sv"].fill_null(-1).to_numpy())

@@ -44,6 +44,23 @@ class Counts:
         return words
 
 
+def with_least_errors(columns: dict[str, NDArray[Any]]) -> None:
+    """Of half a horizontal error that is above the level, the other half counts as zero: the error is no smaller.
+
+    Half an error within the level says nothing, and stays unknown.
+
+    Parameters
+    ----------
+    columns : dict of ndarray, shape (n,)
+        As in :func:`levels_that_count`; errors are changed in place. [m]
+    """
+    east, north = columns["nse_e_m"], columns["nse_n_m"]
+    half = np.isnan(east) != np.isnan(north)
+    above = half & (np.fmax(np.abs(east), np.abs(north)) > columns["hpl_m"])
+    for name, part in (("nse_e_m", east), ("nse_n_m", north)):
+        columns[name] = np.where(above & np.isnan(part), 0.0, part)
+
+
 def levels_that_count(columns: dict[str, NDArray[Any]], status: pl.Series, *, vertical: bool) -> NDArray[np.bool_]:
     """Leave out the levels of rows that have none, and return which rows are degraded and mislead.
 

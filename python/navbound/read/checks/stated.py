@@ -10,7 +10,7 @@ from navbound import _core, status
 from navbound.read.checks.statements import NO_ALERT
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from navbound.read.checks.statements import Effect, Stated
 
@@ -56,6 +56,35 @@ def worse_than_level(rows: pl.DataFrame) -> pl.DataFrame:
         return rows
     largest = pl.max_horizontal(beside)
     return rows.with_columns(pl.when(largest > pl.col("hpl_m")).then(largest).alias(BESIDE_LEVEL))
+
+
+UNREAD_ERROR, NO_LEVEL = "unread_error", "no_level"
+"""Whether a row of a table of levels states an error that is no finite number of its domain; and a level that is none, 0 or less or no
+number. The columns are absent where no row does."""
+
+_ERRORS, _LEVELS = ("nse_e_m", "nse_n_m", "nse_u_m", "hpe_m", "vpe_m"), ("hpl_m", "vpl_m")
+
+
+def with_faulty_cells(rows: pl.DataFrame, reasons: Mapping[str, pl.Series], without: Mapping[str, pl.Series]) -> pl.DataFrame:
+    """Add `UNREAD_ERROR` and `NO_LEVEL`.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        As they are read.
+    reasons : mapping of str to Series
+        Why a value of a column was not used, null where it was; ``empty`` is no fault.
+    without : mapping of str to Series
+        Where a level is 0 or less.
+    """
+    # An infinite level bounds nothing and claims nothing.
+    none = {name: ("empty", "not finite") if name in _LEVELS else ("empty",) for name in (*_ERRORS, *_LEVELS)}
+    bad = {name: (~why.is_in(none[name])).fill_null(value=False) for name, why in reasons.items() if name in none}
+    for added, names, more in ((UNREAD_ERROR, _ERRORS, {}), (NO_LEVEL, _LEVELS, without)):
+        at = [bad[name] for name in names if name in bad] + list(more.values())
+        if any(each.any() for each in at):
+            rows = rows.with_columns(pl.select(pl.any_horizontal(at)).to_series().alias(added))
+    return rows
 
 
 def against_itself(rows: pl.DataFrame) -> pl.DataFrame:

@@ -113,7 +113,7 @@ class Values:
         """
         self._check_kinds(frame)
         frame = self._without_names_and_units(frame)
-        out, against = {LINE: frame[LINE]}, list[tuple[str, pl.Series]]()
+        out, against, reasons = {LINE: frame[LINE]}, list[tuple[str, pl.Series]](), dict[str, pl.Series]()
         bad = pl.repeat(value=False, n=frame.height, eager=True)
         for place, (name, column) in enumerate(self._mapping.columns.items()):
             raw = frame[column.name]
@@ -121,6 +121,7 @@ class Values:
                 out[name] = raw.cast(pl.String).str.replace_all(UNSEEN, "").str.strip_chars()
                 continue
             out[name], reason = numbers(raw, column)
+            reasons[name] = reason
             if name in self._required:
                 against.append((column.name, reason))
             else:
@@ -145,7 +146,7 @@ class Values:
         if tuple(self._required) == POSITION:
             rows = stated.of_satellites(self._listed_statuses(stated.against_itself(part)))
         else:
-            rows = self._listed_statuses(stated.worse_than_level(part))
+            rows = self._listed_statuses(stated.with_faulty_cells(stated.worse_than_level(part), reasons, without))
         return stated.with_statements(rows, self._statements(frame))
 
     def _with_unread(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:

@@ -15,7 +15,7 @@ from navbound.errors import ConflictError, FormatError, InputError
 from navbound.kpi.tables import with_larger_error
 from navbound.read.checks.places import header_against
 from navbound.read.checks.refusals import of_navigation, of_observations, rejections, require_most_epochs, skipped_words
-from navbound.read.checks.stated import ALERT, BESIDE_LEVEL
+from navbound.read.checks.stated import ALERT, BESIDE_LEVEL, NO_LEVEL, UNREAD_ERROR
 from navbound.read.tables.epochs import read
 from navbound.read.truth import Truth, with_error, with_truth
 from navbound.run.inputs.solving import Solving, require_same_time
@@ -76,7 +76,7 @@ class Part:
     n_stated_worse : int
         Usable epochs at which the file states an accuracy or an error above its horizontal protection level that no indicator uses.
     position_doubts : list of str
-        Why nothing can be shown of the positions.
+        Why nothing can be shown of the positions, or of the errors and levels that a table states.
     """
 
     epochs: pl.DataFrame
@@ -137,6 +137,7 @@ def from_table(path: Path, truth: Truth, needs: Sequence[str] = ("hpl_m",)) -> P
         sbas.EXTRACTION_LABEL if of_extraction else "",
         unread=reading.unread,
         n_stated_worse=_beside_level(epochs),
+        position_doubts=[f"{path.name}: {words}" for words in _faulty_cells(epochs)],
     )
 
 
@@ -145,6 +146,23 @@ def _beside_level(epochs: pl.DataFrame) -> int:
         return 0
     usable = pl.col("status").is_in(status.USABLE) if "status" in epochs.columns else pl.lit(value=True)
     return epochs.filter(usable & pl.col(BESIDE_LEVEL).is_not_null()).height
+
+
+def _faulty_cells(epochs: pl.DataFrame) -> list[str]:
+    """What an error or a level may hide that is written and cannot be one; rows whose position is of no use claim nothing.
+
+    A level of 0 or less is how tables without a status write an outage. Beside the status ``ok`` it is none.
+    """
+    stated = pl.col("status") if "status" in epochs.columns else pl.lit("")
+    words = []
+    for column, claims, what in (
+        (UNREAD_ERROR, stated.is_in(["", *status.USABLE]), "an error that is no finite number, so that it may be of any size, in {}"),
+        (NO_LEVEL, stated == "ok", "a protection level that is none (0 or less, or no number) beside the status ok, in {}"),
+    ):
+        n = epochs.filter(claims & pl.col(column)).height if column in epochs.columns else 0
+        if n:
+            words.append(f"not shown: the file states {what.format('1 row' if n == 1 else f'{n} rows')}")
+    return words
 
 
 def _without_alerts(epochs: pl.DataFrame) -> pl.DataFrame:
