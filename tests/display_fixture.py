@@ -17,7 +17,8 @@ from navbound import _core, live
 from navbound.live.display import Options, Server, Watch
 from navbound.live.session import now_ns
 
-SETTINGS = live.Settings(format="json", rnp_m=555.6, method="tse-exact", sample_period_s=0.1)
+# Alerts end sooner than by default, so that a test sees several.
+SETTINGS = live.Settings(format="json", rnp_m=555.6, method="tse-exact", sample_period_s=0.1, clear_delay_s=5.0, clear_ratio=0.9)
 """Ten positions a second; stale after two seconds."""
 WHOLE = {
     "est_lat_rad": 0.85,

@@ -46,22 +46,22 @@ def test_the_healthy_table_is_inside(tmp_path: Path) -> None:
     ],
 )
 def test_an_error_above_the_level_of_a_degraded_row_is_a_hazard(row: str, tmp_path: Path) -> None:
-    found = verdict(tmp_path, row)
-    assert found.id == "not_believable"
-    assert "Hazardously misleading information: LPV-200 at 3 epochs" in found.words
+    judged = verdict(tmp_path, row)
+    assert judged.id == "not_believable"
+    assert "Hazardously misleading information: LPV-200 at 3 epochs" in judged.words
 
 
 @pytest.mark.parametrize(("row", "id_"), [("0.3,0.4,1,15,22,10,degraded,few_satellites", "inside"), ("100,0,1,,,10,degraded,", "inside")])
 def test_a_degraded_row_without_an_error_above_a_level_has_no_level(row: str, id_: str, tmp_path: Path) -> None:
-    found = verdict(tmp_path, row)
-    assert (found.id, found.n_judged) == (id_, N - 3)
-    assert "3 without a level" in found.words
+    judged = verdict(tmp_path, row)
+    assert (judged.id, judged.n_judged) == (id_, N - 3)
+    assert "3 without a level" in judged.words
 
 
 @pytest.mark.parametrize("status", ["not_available", "invalid_input", "RAIM FAIL", "0", "", "NO FIX"])
 def test_a_row_that_says_that_there_is_no_level_has_none(status: str, tmp_path: Path) -> None:
-    found = verdict(tmp_path, f"100,0,1,15,22,10,{status},")
-    assert (found.id, found.n_judged) == ("inside", N - 3)
+    judged = verdict(tmp_path, f"100,0,1,15,22,10,{status},")
+    assert (judged.id, judged.n_judged) == ("inside", N - 3)
 
 
 def table(**changed: Any) -> dict[str, Any]:
@@ -80,9 +80,9 @@ def table(**changed: Any) -> dict[str, Any]:
 
 
 def test_a_degraded_epoch_is_available_only_where_it_misleads() -> None:
-    misled = kpi.evaluate(table(status="degraded", nse_e_m=16.0), "LPV-200")
-    assert (misled.n_mi_epochs, misled.levels[0].n_mi_epochs, misled.levels[0].n_hazard_epochs) == (1, 1, 0)
-    assert any("1 row is degraded and states a protection level that its error exceeds" in note for note in misled.notes)
+    misleading = kpi.evaluate(table(status="degraded", nse_e_m=16.0), "LPV-200")
+    assert (misleading.n_mi_epochs, misleading.levels[0].n_mi_epochs, misleading.levels[0].n_hazard_epochs) == (1, 1, 0)
+    assert any("1 row is degraded and states a protection level that its error exceeds" in note for note in misleading.notes)
     kept = kpi.evaluate(table(status="degraded", nse_e_m=14.0), "LPV-200")
     assert (kept.n_mi_epochs, kept.levels[0].n_available, kept.n_no_solution) == (0, 9, 1)
 
@@ -94,9 +94,9 @@ def test_a_vertical_that_no_level_limits_makes_no_degraded_epoch_available() -> 
 
 @pytest.mark.parametrize("errors", ["100,,1", ",-100,1", "100,nan,1", "100,NaN,1"])
 def test_half_an_error_above_the_level_is_a_hazard(errors: str, tmp_path: Path) -> None:
-    found = verdict(tmp_path, f"{errors},15,22,10,ok,")
-    assert found.id == "not_believable"
-    assert "Hazardously misleading information: LPV-200 at 3 epochs" in found.words
+    judged = verdict(tmp_path, f"{errors},15,22,10,ok,")
+    assert judged.id == "not_believable"
+    assert "Hazardously misleading information: LPV-200 at 3 epochs" in judged.words
 
 
 def test_half_an_error_within_the_level_is_not_known() -> None:
@@ -107,18 +107,18 @@ def test_half_an_error_within_the_level_is_not_known() -> None:
 
 @pytest.mark.parametrize("errors", ["inf,0,1", "1e300,0,1", "100m,0,1", '"100,0",0,1', "0,-inf,1", "0,0,inf", "0,0,1e5 m"])
 def test_an_error_that_is_written_and_no_number_shows_nothing(errors: str, tmp_path: Path) -> None:
-    found = verdict(tmp_path, f"{errors},15,22,10,ok,")
-    assert found.id == "not_shown"
-    assert "the file states an error that is no finite number, so that it may be of any size, in 3 rows" in found.words
+    judged = verdict(tmp_path, f"{errors},15,22,10,ok,")
+    assert judged.id == "not_shown"
+    assert "the file states an error that is no finite number, so that it may be of any size, in 3 rows" in judged.words
     # A row that has no level claims nothing.
     assert verdict(tmp_path, f"{errors},15,22,10,not_available,").id == "inside"
 
 
 @pytest.mark.parametrize("levels", ["0,22", "-1,22", "15,0", "15m,22"])
 def test_no_level_beside_ok_shows_nothing(levels: str, tmp_path: Path) -> None:
-    found = verdict(tmp_path, f"100,0,1,{levels},10,ok,")
-    assert found.id in {"not_shown", "not_believable"}
-    assert "a protection level that is none (0 or less, or no number) beside the status ok, in 3 rows" in found.words
+    judged = verdict(tmp_path, f"100,0,1,{levels},10,ok,")
+    assert judged.id in {"not_shown", "not_believable"}
+    assert "a protection level that is none (0 or less, or no number) beside the status ok, in 3 rows" in judged.words
     assert verdict(tmp_path, f"0,0,1,{levels},10,not_available,").id == "inside"
 
 

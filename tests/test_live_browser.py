@@ -207,7 +207,7 @@ def test_data_that_stop_are_stale_within_the_stale_time_and_numbers_go(normal: S
     assert "STALE" in normal.page.locator(".band.trouble").inner_text()
     assert "old" not in normal.page.locator(".map-words").inner_text()
     assert normal.page.locator(".map-words").inner_text().startswith("Last position")
-    assert normal.page.title().startswith("STALE")
+    normal.page.wait_for_function("() => document.title.startsWith('STALE')", timeout=2000)
     # The monitor notices the silence too, by the heartbeats of the reader.
     normal.page.wait_for_selector(".alert-row:has-text('UNAVAIL')")
     normal.feeder.positions = True

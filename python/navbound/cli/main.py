@@ -158,15 +158,15 @@ def _end_by(surprise: BaseException) -> None:
 
 def _of_parser(refusal: Any) -> str:
     """The parser's refusal, with the value that was typed where it names none, and with what the argument is."""
-    words: str = refusal.format_message()
+    text: str = refusal.format_message()
     parameter: Any = getattr(refusal, "param", None)
     meant = getattr(parameter, "help", None)
     if not meant:
-        return words
+        return text
     typed = _typed(parameter.opts)
-    if type(refusal).__name__ == "MissingParameter" or typed is None or typed in words:
-        return f"{words.removesuffix('.')}: {meant}"
-    return f"{parameter.opts[0]} = {typed} is not accepted: {words.partition(': ')[2] or words}; it is: {meant}"
+    if type(refusal).__name__ == "MissingParameter" or typed is None or typed in text:
+        return f"{text.removesuffix('.')}: {meant}"
+    return f"{parameter.opts[0]} = {typed} is not accepted: {text.partition(': ')[2] or text}; it is: {meant}"
 
 
 def _typed(options: list[str]) -> str | None:
