@@ -96,7 +96,7 @@ def show_command(
             levels=list(procedure.levels),
             notes=list(procedure.notes),
             vertical_path=heights.path,
-            obstacle_surface=None if heights.surface is None else procedure_records.ObstacleSurface(*heights.surface),
+            obstacle_surface=None if heights.surface is None else procedure_records.ObstacleSurface(**heights.surface._asdict()),
             vertical_words=list(heights.words),
             findings=findings,
         )
