@@ -9,7 +9,7 @@ import shutil
 import signal
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -95,7 +95,8 @@ class Shown:
 def shown(browser: Browser, folder: Path, width: int = 1440, scheme: Any = "light", fed: Fed | None = None) -> Iterator[Shown]:
     fed = fed or Fed(folder)
     problems: list[str] = []
-    with Feeder(fed) as feeder, display_child(fed.folder, Options()) as child:
+    # A journal that a failed test leaves open is complained of in another test.
+    with closing(fed), Feeder(fed) as feeder, display_child(fed.folder, Options()) as child:
         context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme)
         page = context.new_page()
         page.on("pageerror", lambda error: problems.append(str(error)))
@@ -103,10 +104,11 @@ def shown(browser: Browser, folder: Path, width: int = 1440, scheme: Any = "ligh
         page.goto(child.text)
         page.wait_for_selector("#display[data-painted]", timeout=20_000)
         display = Shown(fed, feeder, child, page, problems)
-        yield display
-        display.go_on()
-        context.close()
-    fed.close()
+        try:
+            yield display
+        finally:
+            display.go_on()
+            context.close()
 
 
 @pytest.fixture

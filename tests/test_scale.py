@@ -31,7 +31,7 @@ def workers() -> Iterator[dict[str, scale.Workers]]:
     """One Dask cluster for all tests; its workers start again when they are lost."""
     distributed = pytest.importorskip("distributed", reason="SKIPPED ALOUD: Dask is not installed")
     with (
-        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs="CRITICAL") as cluster,
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs="CRITICAL") as cluster,
         distributed.Client(cluster) as client,
     ):
         yield {"serial": scale.Workers(), "processes": scale.Workers(2), "dask": scale.Workers(cluster=client)}

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import signal
 from typing import TYPE_CHECKING, Any
 
 from navbound.errors import FormatError, NavboundError
+from navbound.scale.spawned import CONTEXT, deaf_to_interrupts
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -46,10 +46,10 @@ class Child:
     """
 
     def __init__(self, work: Work, folder: Path, options: Any, name: str) -> None:
-        spawned = multiprocessing.get_context("spawn")
-        self._pipe, theirs = spawned.Pipe()
-        self._process = spawned.Process(target=_main, args=(work, folder, options, theirs), daemon=True)
-        self._process.start()
+        self._pipe, theirs = CONTEXT.Pipe()
+        self._process = CONTEXT.Process(target=_main, args=(work, folder, options, theirs), daemon=True)
+        with deaf_to_interrupts():
+            self._process.start()
         theirs.close()
         kind, text = "trouble", "it did not start"
         if self._pipe.poll(_START_S):
@@ -95,8 +95,6 @@ class Child:
 
 
 def _main(work: Work, folder: Path, options: Any, pipe: Connection) -> None:
-    # A key pressed in a terminal goes to both processes: the session decides when both end.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
     # The other end of the pipe is gone when the session has ended, however it did.

@@ -116,7 +116,8 @@ def _solvable(source: Source) -> str:
     if not n_epochs:
         return ""
     orbits = "" if n_records else " (and a RINEX navigation file of its time, as the log holds no orbits)"
-    return f"; it holds raw measurements of {n_epochs} epochs: with --solve{orbits} positions are solved from them"
+    epochs = "1 epoch" if n_epochs == 1 else f"{n_epochs} epochs"
+    return f"; it holds raw measurements of {epochs}: with --solve{orbits} positions are solved from them"
 
 
 def _undated(n_positions: int, n_damaged: int) -> str:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from navbound.errors import ConflictError, InputError, NavboundError
+from navbound.scale.spawned import CONTEXT, deaf_to_interrupts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
@@ -26,6 +27,8 @@ ALONE_S = 60.0
 """A cluster that has had no worker for this long is not waited for. [s]"""
 AHEAD = 4
 """Tiles for each worker that may be worked off before the first one that is not finished: so many results wait in memory. [1]"""
+HEARD_S = 0.1
+"""The longest wait for a tile before Ctrl-C is looked for: the handler that polars sets lets a wait without an end go on. [s]"""
 MOST_LOSSES = 3
 """Losses of a worker in a row, without one tile finished in between, after which it is the tile's fault. [1]"""
 
@@ -95,18 +98,24 @@ def processes(function: Function, pending: Pending, workers: Workers) -> Generat
 
 
 def _pool(function: Function, left: dict[int, Any], count: int) -> Generator[tuple[int, Any], None, None]:
-    # A forked child would inherit the locks of the threads of this process; a fresh interpreter has none.
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(min(count, len(left)), mp_context=context, initializer=begin_worker) as pool:
+    others = set(multiprocessing.active_children())
+    with ProcessPoolExecutor(min(count, len(left)), mp_context=CONTEXT, initializer=begin_worker) as pool:
         waiting, running = deque(sorted(left)), dict[Future[Any], int]()
         try:
             while waiting or running:
                 # A result waits here until those before it are taken: no worker is far ahead of the slowest.
                 while waiting and waiting[0] < min(running.values(), default=waiting[0]) + AHEAD * count:
                     index = waiting.popleft()
-                    running[pool.submit(function, left[index])] = index
-                for future in wait(running, return_when=FIRST_COMPLETED).done:
+                    # Workers start with the tiles that they are for.
+                    with deaf_to_interrupts():
+                        running[pool.submit(function, left[index])] = index
+                for future in wait(running, HEARD_S, FIRST_COMPLETED).done:
                     yield running.pop(future), future.result()
+        except BaseException:
+            # Nobody wants the tiles that are being worked off any more.
+            for worker in set(multiprocessing.active_children()) - others:
+                worker.kill()
+            raise
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
-import signal
 import time
 from typing import TYPE_CHECKING, Any
 
 from navbound.errors import NavboundError
 from navbound.live.fleet.transport import connect
 from navbound.live.fleet.worker import Worker
+from navbound.scale.spawned import CONTEXT, deaf_to_interrupts
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,10 +31,10 @@ class _Member:
 
     def begin(self) -> None:
         """Start it."""
-        spawned = multiprocessing.get_context("spawn")
-        self.pipe, theirs = spawned.Pipe()
-        self.process = spawned.Process(target=_main, args=(self._name, theirs), daemon=True)
-        self.process.start()
+        self.pipe, theirs = CONTEXT.Pipe()
+        self.process = CONTEXT.Process(target=_main, args=(self._name, theirs), daemon=True)
+        with deaf_to_interrupts():
+            self.process.start()
         theirs.close()
         self.since_s = time.monotonic()
 
@@ -128,8 +127,6 @@ class Crew:
 
 
 def _main(name: str, pipe: Connection) -> None:
-    # A key pressed in a terminal goes to all processes: who started this one decides when it ends.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
     heard = list[str]()
 
     def send(kind: str) -> Callable[[Any], None]:
