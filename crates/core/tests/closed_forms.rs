@@ -7,8 +7,9 @@ use navbound_core::bound::ee::{Both, bias};
 use navbound_core::bound::faults::FaultModes;
 use navbound_core::bound::gbas::bias::Ordering;
 use navbound_core::bound::gbas::detection::Hazard;
+use navbound_core::bound::gbas::noise::{Coloured, Form};
 use navbound_core::bound::gbas::range::carrier_sigma;
-use navbound_core::bound::sbas::model::{Corrected, broadcast_ionosphere_m2};
+use navbound_core::bound::sbas::model::{Corrected, Elevation, broadcast_ionosphere_m2, troposphere_m2};
 use navbound_core::bound::tse::{Component, Deviation, deviations, farthest, ln_exceedance_risk, mixture, rf_fte, sigma_budget};
 use navbound_core::frame::{Covariance, Displacement, Enu};
 use navbound_core::monitor::consistency::{integral_transform, normalised_square, normalised_square_horizontal};
@@ -235,6 +236,30 @@ fn a_coasted_phase_has_the_errors_of_equation_20() {
     let slant = 1.0 / (1.0 - ratio * ratio).sqrt() * CARRIER_SINGLE.ionosphere_gradient.unwrap() * speed * time;
     let single = carrier_sigma(&CARRIER_SINGLE, Radians::new(el), speed, time).unwrap().m();
     close(single, (squares + slant * slant).sqrt(), 1e-12);
+}
+
+#[test]
+fn coloured_noise_begins_and_is_driven_as_its_bound_says() {
+    let of = |form: Form| Coloured::new(Metres::new(3.0), [10.0, 40.0], form).unwrap();
+    // Of a variance of 9 m^2 and a quarter between the time constants: 2 / (1 + 1/4) to begin with, four times the noise to drive it.
+    close(of(Form::Bound).initial_m2(), 9.0 * 1.6, 1e-15);
+    close(of(Form::Paper).initial_m2(), 9.0, 1e-15);
+    let gone = 1.0 - (-2.0 * 20.0 / 40.0_f64).exp();
+    close(of(Form::Bound).added_m2(20.0), 36.0 * gone, 1e-15);
+    close(of(Form::Paper).added_m2(20.0), 9.0 * gone, 1e-15);
+}
+
+#[test]
+fn the_troposphere_is_that_of_the_zenith_times_the_square_of_its_mapping() {
+    let at = |degrees: f64| {
+        let rad = degrees.to_radians();
+        troposphere_m2(&Elevation { rad, sin: rad.sin(), decay: 0.0 })
+    };
+    // Twelve centimetres and a mapping that is one at the zenith to a part in a million.
+    close(at(90.0), 0.0144, 1e-6);
+    close(at(30.0), 0.0144 * 1.001 * 1.001 / 0.252_001, 1e-12);
+    let at_one = 0.0144 * 1.001 * 1.001 / (0.002_001 + 1.0_f64.to_radians().sin().powi(2));
+    close(at(1.0), at_one * (1.0 + 0.015 * 9.0_f64).powi(2), 1e-12);
 }
 
 #[test]

@@ -173,3 +173,25 @@ fn axes(fix: &Fix<'_>, less: &Travel, all: &Travel, p: f64) -> [Term; 2] {
     }
     terms
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::special::normal::tail;
+
+    #[test]
+    fn a_level_is_the_root_of_equation_17_with_its_threshold() {
+        let all = Term { p: 2.0, sigma: 1.0, gain: 0.5, ..Term::default() };
+        let less = Term { p: 1e-4, sigma: 2.0, separation: 1.5, gain: 0.8, separation_gain: 0.3 };
+        let filled = MultipleFaults { terms: [[less; 2]; MOST_MODES], all: [all; 2], count: 1, not_monitored: 1e-9 };
+        let budget = Budget { allotted: Risk::new(1e-7).unwrap(), continuity: Risk::new(8e-6).unwrap() };
+        let [east, north, horizontal] = filled.levels(Metres::new(4.0), &budget, &mut LevelEquation::default()).unwrap();
+        // Four metres of bias: 2 m in the position of all, 3.2 m in that of the rest, 1.2 m between them.
+        let threshold = 1.5 * one_sided_factor(2e-6) + 1.2;
+        let risk = 2.0 * tail((east.m() - 2.0) / 1.0) + 1e-4 * tail((east.m() - threshold - 3.2) / 2.0);
+        // The last step of third order begins within 1e-4 of the root, in the logarithm of the risk.
+        assert!((risk / 4.95e-8 - 1.0).abs() < 1e-6, "{risk}");
+        assert_eq!(east, north);
+        assert!((horizontal.m() / east.m() - 2.0_f64.sqrt()).abs() < 1e-15);
+    }
+}
