@@ -441,8 +441,7 @@ mod tests {
     fn a_line_of_sight_is_that_to_where_the_signal_left() {
         let positions = [[15.6e6, 7.5e6, 20.1e6], [2.0e6, -22.0e6, 14.0e6]];
         let velocities = [[-900.0, 2800.0, -1400.0], [2100.0, 1900.0, 1300.0]];
-        let mut orbits = Orbits::default();
-        orbits.count = 2;
+        let mut orbits = Orbits { count: 2, ..Orbits::default() };
         for (i, (p, v)) in positions.iter().zip(&velocities).enumerate() {
             for axis in 0..3 {
                 orbits.position[axis][i] = p[axis];
