@@ -26,6 +26,16 @@ settings.register_profile("repeatable", derandomize=True)
 settings.load_profile("repeatable")
 
 
+LONG = ("site", "wheel", "large_tables", "demo", "live_browser", "cli", "report_browser", "predict_flight")
+"""Files that take a minute and more, the longest first: one that begins last is waited for while the other cores rest."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Long files first; the order within a file stays."""
+    place = {f"test_{name}.py": rank for rank, name in enumerate(LONG)}
+    items.sort(key=lambda item: place.get(item.path.name, len(LONG)))
+
+
 @pytest.fixture(scope="session")
 def flown(tmp_path_factory: pytest.TempPathFactory) -> Run:
     """The shipped flight, judged and written once for all tests."""

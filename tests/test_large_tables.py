@@ -133,7 +133,8 @@ def test_pieces_of_a_parquet_file_give_the_bits_of_the_whole(tmp_path: Path, kin
     pl.read_csv(text, infer_schema_length=None).write_parquet(file, row_group_size=50)
     whole = in_pieces(file, tmp_path / "whole", None)
     assert isinstance(whole.table, pl.DataFrame)
-    for piece_rows in PIECES:
+    # Row by row is the text's test: what a table holds is cut after it was read, whatever it was read from.
+    for piece_rows in PIECES[1:]:
         run = in_pieces(file, tmp_path / "pieces", piece_rows)
         assert not isinstance(run.table, pl.DataFrame), "it must have been read in pieces"
         assert run.summary.model_dump_json() == whole.summary.model_dump_json(), piece_rows

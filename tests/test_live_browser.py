@@ -242,7 +242,8 @@ def test_a_server_that_stops_is_a_lost_link_by_the_pages_own_clock(normal: Shown
     assert LINK_S - 0.7 < took < LINK_S + BUSY_S
     gone(normal)
     overlay = normal.page.locator(".lost")
-    assert overlay.is_visible()
+    # A busy machine may have news of before still on the way: they are shown, and lost again by the same clock.
+    overlay.wait_for(state="visible", timeout=10_000)
     assert overlay.inner_text() == "LINK LOST"
     assert "not monitored on this screen" in normal.page.locator(".band.trouble").inner_text()
     assert "LINK LOST" in normal.page.title()
