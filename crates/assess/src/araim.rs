@@ -139,23 +139,18 @@ impl Desk {
 /// [`AtIndex`]: the first epoch with a number outside its domain.
 pub fn levels(sights: &Sights<'_>, rule: &Rule, exclusion: bool) -> Result<Vec<Row>, AtIndex> {
     let request = Requested { rule: *rule, p_const: sights.p_const, p_sat: priors(sights) };
+    // One closure, compiled once; the attribute may stand on an argument alone.
+    let epoch = core::convert::identity(
+        #[inline(always)]
+        |desk: &mut Desk, row: usize| desk.row(sights, row, rule, exclusion),
+    );
     if sights.len() > 1 {
-        return rows(
-            sights.len(),
-            || request.desk(),
-            #[inline(always)]
-            |desk, row| desk.row(sights, row, rule, exclusion),
-        );
+        return rows(sights.len(), || request.desk(), epoch);
     }
     KEPT.with_borrow_mut(|kept| {
         let known = kept.take_if(|(before, _)| *before == request);
         let (_, desk) = kept.insert(known.unwrap_or_else(|| (request, request.desk())));
-        at_desk(
-            desk,
-            sights.len(),
-            #[inline(always)]
-            |desk, row| desk.row(sights, row, rule, exclusion),
-        )
+        at_desk(desk, sights.len(), epoch)
     })
 }
 

@@ -290,24 +290,28 @@ pub(crate) fn rows<D: Send, T: Send>(
     desk: impl Fn() -> D + Sync + Send,
     epoch: impl Fn(&mut D, usize) -> Result<T, OutOfDomain> + Sync,
 ) -> Result<Vec<T>, AtIndex> {
-    let arch = Arch::new();
     let chunk = CHUNK.min(256);
     if n <= chunk {
-        return at_desk(&mut desk(), n, epoch);
+        return worked(&mut desk(), 0..n, &epoch);
     }
-    let done: Result<Vec<Vec<T>>, AtIndex> = (0..n.div_ceil(chunk))
-        .into_par_iter()
-        .map_init(desk, |desk, k| {
-            let span = k * chunk..n.min((k + 1) * chunk);
-            arch.dispatch(Job { desk, span, epoch: &epoch })
-        })
-        .collect();
+    let done: Result<Vec<Vec<T>>, AtIndex> =
+        (0..n.div_ceil(chunk)).into_par_iter().map_init(desk, |desk, k| worked(desk, k * chunk..n.min((k + 1) * chunk), &epoch)).collect();
     Ok(done?.into_iter().flatten().collect())
 }
 
 /// A few epochs in this thread, without waking another, at a desk that the caller keeps.
 pub(crate) fn at_desk<D, T>(desk: &mut D, n: usize, epoch: impl Fn(&mut D, usize) -> Result<T, OutOfDomain>) -> Result<Vec<T>, AtIndex> {
-    Arch::new().dispatch(Job { desk, span: 0..n, epoch: &epoch })
+    worked(desk, 0..n, &epoch)
+}
+
+/// Some epochs with the widest instructions that the processor has. Not inlined: every epoch is compiled for each width, which is most of the
+/// time to build this crate, and once for all who call it is enough.
+#[inline(never)]
+fn worked<D, T, F>(desk: &mut D, span: std::ops::Range<usize>, epoch: &F) -> Result<Vec<T>, AtIndex>
+where
+    F: Fn(&mut D, usize) -> Result<T, OutOfDomain>,
+{
+    Arch::new().dispatch(Job { desk, span, epoch })
 }
 
 /// One chunk as a job for [`Arch::dispatch`], which compiles it once for each width of instructions.
