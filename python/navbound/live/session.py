@@ -21,6 +21,7 @@ from navbound.live import journal
 from navbound.live.settings import load
 from navbound.live.sinks.events import Events
 from navbound.live.source import File
+from navbound.live.statements import unread
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -131,6 +132,7 @@ class Session:
         self._core = settings.core()
         self.n_epochs = self.n_transitions = 0
         self.unfinished: str | None = None
+        self._named: set[str] = set()
         _prepare(out, settings, origin or Origin(), resume=resume)
         self._lock = journal.alone(out)
         self._lock.__enter__()
@@ -194,6 +196,10 @@ class Session:
         self._passed("after-commit")
         self.n_epochs += n_epochs
         self._show(rows)
+        if new := self.passed_over().keys() - self._named:
+            # At once: a session may never end.
+            self._named |= new
+            self._say(unread(new))
 
     def _show(self, rows: list[_core._TransitionRow], *, replayed: bool = False) -> None:
         if not rows:

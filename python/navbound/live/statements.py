@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
-from navbound.read.checks.statements import KINDS, kind_of
+from navbound.read.checks.statements import BARE_LENGTHS, KINDS, kind_of, speaks_of_integrity
 from navbound.read.tables.columns import QUANTITIES, STATED_QUANTITIES, UNITS
 from navbound.table.columns import COVARIANCE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 _JUDGED = frozenset({"sigma_e_m", "sigma_n_m", "epu_m", "rc_m", "nac_p", "nic", "hpl_m", "status", *COVARIANCE})
 """Quantities of tables that bound a position or speak for it. Under a name that is none of the contract their value is not understood."""
@@ -21,11 +25,19 @@ Kinds = list[tuple[list[str], list[str], float | None]]
 def for_core() -> tuple[Kinds, list[str]]:
     """Kinds as names, words that say nothing against the position and the largest such number; and words of ``nav_mode`` against it."""
     judged = [q for q in QUANTITIES if q.name in _JUDGED] + [q for q in STATED_QUANTITIES if q.name != "alert"]
-    named = [*_CONTRACT, *(name for q in judged for name in (q.name, *q.aliases))]
-    lengths = {name.removesuffix("_m") for q in judged if q.si == "m" for name in (q.name, *q.aliases)}
+    named = [*_CONTRACT, *sorted(BARE_LENGTHS), *(name for q in judged for name in (q.name, *q.aliases))]
+    lengths = {name.removesuffix("_m") for q in judged if q.si == "m" for name in (q.name, *q.aliases)} | BARE_LENGTHS
     kinds: Kinds = [([*named, *(f"{name}_{unit}" for name in sorted(lengths) for unit in UNITS["m"])], [], None)]
     for kind in KINDS:
         several = [f"{name}s" for name in kind.names] if kind.effect == "alert" else []
         kinds.append((sorted([*kind.names, *several]), sorted(kind.fine), None if math.isinf(kind.above) else kind.above))
     mode = kind_of("nav_mode")
     return kinds, sorted((mode.against if mode is not None else frozenset()) - _USABLE_MODES)
+
+
+def unread(keys: Iterable[str]) -> str:
+    """A sentence about keys that nothing reads; by the rule of tables some of them speak of accuracy or integrity."""
+    names = sorted(keys)
+    speaking = [name for name in names if speaks_of_integrity(name)]
+    more = f"; by their names these may speak of accuracy or integrity, and nothing is judged by them: {', '.join(speaking)}"
+    return f"keys that nothing reads: {', '.join(names)}{more if speaking else ''}"

@@ -103,6 +103,7 @@ class Taken:
         self._path, self._settings = folder / journal.SNAPSHOT, settings
         self._read: int | None = None
         self.counters: dict[str, float] = {}
+        self.n_unread = 0
         self.n_tracks: int | None = None
         self.written_s: float | None = None
 
@@ -117,6 +118,7 @@ class Taken:
             return
         self._read, self.written_s = status.st_mtime_ns, status.st_mtime
         self.counters, self.n_tracks = dict(lane.counters()), lane.n_tracks
+        self.n_unread = sum(lane.passed_over().values())
 
     def lines(self) -> list[str]:
         """As Prometheus reads it."""
@@ -131,6 +133,10 @@ class Taken:
             ),
             *family(
                 "navbound_bytes_total", "counter", "Bytes of the source, as of the last snapshot.", {"": int(self.counters["n_bytes"])}
+            ),
+            # Without their names: text from the air is no label.
+            *family(
+                "navbound_unread_keys_total", "counter", "Keys of records that nothing reads, as of the last snapshot.", {"": self.n_unread}
             ),
             *family("navbound_tracks", "gauge", "Tracks that are watched, as of the last snapshot.", {"": self.n_tracks}),
         ]

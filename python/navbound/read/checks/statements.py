@@ -291,6 +291,19 @@ def speaks_of_level(name: str) -> bool:
     return named and _NO_POSITION.isdisjoint(parts)
 
 
+_WHOSE = _words("h horizontal pos position gps gnss horizontal_position estimated_horizontal estimated_horizontal_position")
+_WHAT = _words("acc accuracy uncertainty sigma std stddev")
+BARE_LENGTHS = (
+    _words("anp hacc pacc accuracy epe eph ehpe ehe epx epy cep cep50 cep95 r95 drms 2drms twodrms hrms hfom herr poserr")
+    | _LEVEL
+    | _words("protection_level containment_radius containment_limit horizontal_integrity_level horizontal_integrity_limit")
+    | {f"{whose}_{what}" for whose in _WHOSE for what in _WHAT}
+    | {f"{what}_{whose}" for whose in ("h", "horizontal") for what in _WHAT}
+    | {f"horizontal_containment_{what}" for what in ("radius", "limit")}
+)
+"""Bare names that can only be those of a horizontal accuracy or protection level; `acc`, `error` or `std` alone may be anything. Ours."""
+
+
 @dataclass(frozen=True)
 class Stated:
     """What one column states, row by row.

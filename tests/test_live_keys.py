@@ -1,0 +1,96 @@
+"""Keys of live records beside those of the contract: heard where tables know them, and otherwise said and counted."""
+
+from __future__ import annotations
+
+import json
+from contextlib import closing
+from typing import TYPE_CHECKING
+
+import polars as pl
+import pytest
+
+from navbound import _core, live
+from navbound.live import statements
+from navbound.live.settings import Settings
+from navbound.live.sinks import metrics, tables
+from navbound.read.checks.statements import BARE_LENGTHS, kind_of, speaks_of_accuracy, speaks_of_integrity, speaks_of_level
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def lines(n: int, **more: object) -> list[bytes]:
+    """Records once a second of an aircraft that flies north, some keys added."""
+    record = {"v": 1, "track": "A", "est_lon_rad": 0.03, "ground_speed_mps": 70.0, "sigma_m": 5.0} | more
+    times = [
+        record | {"time_ns": 1_317_644_000_000_000_000 + k * 1_000_000_000, "est_lat_rad": 0.85 + k * 70 / 6_371_000} for k in range(n)
+    ]
+    return [json.dumps(each).encode() + b"\n" for each in times]
+
+
+def chunk(content: list[bytes]) -> bytes:
+    return _core.live_input("chunk", None, b"".join(content))
+
+
+def lived(folder: Path, **more: object) -> tuple[pl.DataFrame, dict[str, int]]:
+    """Epochs of a session of a few such records, and the keys that it did not read."""
+    session = live.Session(folder, Settings(format="json", rnp_m=555.6))
+    session.take(chunk(lines(20, **more)))
+    unread = session.passed_over()
+    session.finish()
+    return tables.epochs(folder), unread
+
+
+HEARD = (
+    "hAcc h_acc HACC_mm eph eph_m ehe epe cep95 2drms horizontalAccuracy position_accuracy accuracy sigma_h ANP HIL hil_nm "
+    "HorizontalIntegrityLimit containment_radius"
+)
+
+
+@pytest.mark.parametrize("key", HEARD.split())
+def test_an_accuracy_or_a_level_under_a_name_of_tables_is_heard(tmp_path: Path, key: str) -> None:
+    epochs, unread = lived(tmp_path / "out", **{key: 5000.0})
+    assert (set(epochs["status"]), set(epochs["alert"]), unread) == ({"invalid_input"}, {"unavailable"}, {})
+
+
+@pytest.mark.parametrize(
+    "key", ["epv", "vAcc", "acc", "error", "std", "rms", "vel_acc", "range_std", "heading_accuracy", "integrity_level"]
+)
+def test_what_bounds_no_position_for_certain_is_counted_and_not_heard(tmp_path: Path, key: str) -> None:
+    epochs, unread = lived(tmp_path / "out", **{key: 0.1})
+    assert (set(epochs["status"]), unread) == ({"ok"}, {key: 20})
+
+
+def test_every_bare_length_is_one_of_tables_and_no_other_statement() -> None:
+    for name in BARE_LENGTHS - {"anp"}:
+        assert speaks_of_accuracy(name) or speaks_of_level(name), name
+    assert speaks_of_integrity("anp")
+    assert not [name for name in BARE_LENGTHS if kind_of(name) is not None]
+
+
+def test_a_key_that_nothing_reads_is_reported_while_the_session_runs(tmp_path: Path) -> None:
+    plain, sentences = lines(24), list[str]()
+    more = [
+        json.dumps(json.loads(line) | {"epv": 9.0, key: 7}).encode() + b"\n"
+        for line, key in zip(plain[20:], ("a", "a", "b", "b"), strict=True)
+    ]
+    session = live.Session(tmp_path / "out", Settings(format="json", rnp_m=555.6), say=sentences.append)
+    session.take(chunk(plain[:20]))
+    assert sentences == []
+    for line in more:
+        session.take(chunk([line]))
+    assert sentences == [statements.unread(["epv", "a"]), statements.unread(["b"])]
+    session.finish()
+    # Four times epv, twice each other key.
+    assert "\nnavbound_unread_keys_total 8\n" in metrics.of(tmp_path / "out")
+    # Who goes on hears of them again.
+    again = list[str]()
+    with closing(live.Session(tmp_path / "out", Settings(format="json", rnp_m=555.6), resume=True, say=again.append)) as session:
+        session.take(chunk(lines(25)[24:]))
+    assert again == [statements.unread(["a", "b", "epv"])]
+
+
+def test_the_sentence_names_apart_what_may_speak_of_accuracy() -> None:
+    assert statements.unread(["squawk", "comment"]) == "keys that nothing reads: comment, squawk"
+    apart = "; by their names these may speak of accuracy or integrity, and nothing is judged by them: epv"
+    assert statements.unread(["squawk", "epv"]) == f"keys that nothing reads: epv, squawk{apart}"
