@@ -290,3 +290,20 @@ def test_a_judged_run_hands_the_larger_one_to_the_monitor() -> None:
         Settings(methods=()),
     )
     assert lost.summary.verdict.inside is False, "an epoch whose level is missing is not contained"
+
+
+@pytest.mark.parametrize(("repeat_m", "ends_s"), [(None, 16), (475.0, 16), (480.0, 16), (500.0, 16), (501.0, 23)])
+def test_only_a_repeat_outside_its_limit_begins_the_wait_to_clear_again(repeat_m: float | None, ends_s: int) -> None:
+    # Calm from second 6 on ends ten seconds later; after a repeat outside at second 12 the first calm epoch is that of second 13.
+    monitor, shown = rnp.Monitor(), list[str]()
+
+    def step(second: int, bound_m: float) -> str:
+        bounds = {"tse_exact_m": bound_m, "tse_exact_integrity_m": bound_m}
+        return monitor.step({"time_ns": second * PERIOD_NS, "status": "ok", "rnp_m": RNP_M} | bounds).alert
+
+    for second in range(30):
+        shown.append(step(second, 600.0 if second < 6 else 450.0))
+        if second == 12 and repeat_m is not None:
+            step(second, repeat_m)
+    assert shown[6] == "caution"
+    assert shown.index("normal", 6) == ends_s
