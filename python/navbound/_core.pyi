@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 _F = NDArray[np.float64]
 
 __version__: str
+LEAST_VARIANCE_M2: float
 
 class PanicException(BaseException): ...
 

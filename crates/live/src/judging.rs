@@ -6,7 +6,7 @@ use crate::position::{Position, TrackId};
 use crate::settings::Settings;
 use crate::track::Track;
 use navbound_core::bound::{AlertBound, anp};
-use navbound_core::frame::{Covariance, LatLon};
+use navbound_core::frame::{Covariance, LatLon, counts_as_zero};
 use navbound_core::judge::{Evaluated, Judged, Sample};
 use navbound_core::monitor::motion::{Finding, Motion, Report};
 use navbound_core::monitor::neighbours::{Height, Neighbours, Place};
@@ -62,10 +62,10 @@ fn sample(settings: &Settings, track: &mut Track, position: &Position) -> (Sampl
     }
     match position.covariance_m2 {
         None => refuse(Reason::NoCovariance),
-        Some([ee, _, nn, .., uu]) if [ee, nn, uu].contains(&0.0) => {
+        Some([ee, _, nn, .., uu]) if [ee, nn, uu].into_iter().any(counts_as_zero) => {
             refuse(Reason::ZeroCovariance);
             // In the plane it bounds nothing, so that no alert rests on it.
-            covariance_m2 = covariance_m2.filter(|_| ![ee, nn].contains(&0.0));
+            covariance_m2 = covariance_m2.filter(|_| ![ee, nn].into_iter().any(counts_as_zero));
         }
         Some(_) => {}
     }

@@ -200,6 +200,7 @@ fn alerts() -> Vec<&'static str> {
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add("LEAST_VARIANCE_M2", navbound_core::frame::LEAST_VARIANCE_M2)?;
     m.add_function(wrap_pyfunction!(judge_columns, m)?)?;
     m.add_function(wrap_pyfunction!(alerts, m)?)?;
     m.add_class::<JudgePlan>()?;

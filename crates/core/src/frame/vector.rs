@@ -103,6 +103,14 @@ impl<F: Frame> Covariance<F> {
 /// How far a correlation may be beyond one: what four decimals of a standard deviation of a millimetre leave. Provenance: ours \[1\].
 const ROUNDED: f64 = 0.1;
 
+/// A variance below it counts as zero: a position in radians has a last bit of 1.4 nm on the ground, 2^-52 of 6371 km \[m²\]. Derived.
+pub const LEAST_VARIANCE_M2: f64 = (f64::EPSILON * 6_371_000.0) * (f64::EPSILON * 6_371_000.0);
+
+/// Whether a variance is none of a measured position. One below zero is no variance, which is another fault \[m²\].
+pub fn counts_as_zero(variance_m2: f64) -> bool {
+    (0.0..LEAST_VARIANCE_M2).contains(&variance_m2)
+}
+
 impl Covariance<Enu> {
     /// Whether the vertical can belong to the horizontal: its correlations are within one, and the three are possible together. True where
     /// a number of the vertical is not known: the horizontal then stands for itself.

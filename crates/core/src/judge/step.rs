@@ -11,7 +11,7 @@
 use super::{Errors, Known};
 use crate::bound::tse::{Deviation, axes, exceedance_risk};
 use crate::bound::{AlertBound, Alerting, Bound, IntegrityComparison, Method};
-use crate::frame::{Covariance, Displacement, Enu};
+use crate::frame::{Covariance, Displacement, Enu, counts_as_zero};
 use crate::monitor::rnp;
 use crate::monitor::state::{PerState, StateTable};
 use crate::quantity::{GpsTime, Metres, OutOfDomain, Radians, Reason, Risk, Status, Unavailable};
@@ -80,7 +80,7 @@ impl Sample {
 
     /// Whether its covariance is zero along an axis: a position without an error is none, so that it bounds nothing.
     pub fn has_zero_covariance(&self) -> bool {
-        self.covariance.is_some_and(|covariance| (0..3).any(|axis| covariance.matrix()[(axis, axis)] == 0.0))
+        self.covariance.is_some_and(|covariance| (0..3).any(|axis| counts_as_zero(covariance.matrix()[(axis, axis)])))
     }
 
     /// Its errors along the axes of the path.

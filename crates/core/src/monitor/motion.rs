@@ -94,6 +94,9 @@ const BRAKING_MPS2: f64 = 10.0;
 /// moving needs 11 m to brake. Provenance: ours.
 const ABOUT_THE_FALL_M: f64 = 5.0;
 
+/// Share of the declared period below which the stamps of a track that has moved crawl: 10 ms of 1 s. Provenance: ours.
+const FROZEN_SHARE: f64 = 0.01;
+
 /// Where and when a reported speed fell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fall {
@@ -134,7 +137,7 @@ pub struct Gone {
     pub fell: Option<Fall>,
     /// The position has changed.
     pub moved: bool,
-    /// How much longer than by their times the reports of the first position took to arrive, at least \[s\].
+    /// How much longer than by their times the reports of a position took to arrive, at least \[s\].
     pub crawled_s: f64,
 }
 
@@ -151,9 +154,10 @@ impl Gone {
         let passed_s = elapsed_s.min(limits.latency_s);
         let speed_mps = report.speed_mps;
         self.moved |= self.seen.is_some() && !unchanged;
-        // Once it has moved, a step under stamps that crawl is beyond its reach.
-        self.crawled_s =
-            if self.seen.is_none() || self.moved { 0.0 } else { self.crawled_s + arrival(elapsed_s, limits.period_s) - elapsed_s };
+        // Once it has moved, a position may be newer once in many reports: only what no source samples so fast crawls.
+        let crawls = !self.moved || elapsed_s < FROZEN_SHARE * limits.period_s;
+        let waited_s = if crawls { arrival(elapsed_s, limits.period_s) - elapsed_s } else { 0.0 };
+        self.crawled_s = if self.seen.is_some() && unchanged { self.crawled_s + waited_s } else { 0.0 };
         let (way_m, stood_s) = if unchanged { (self.way_m, self.stood_s) } else { (0.0, 0.0) };
         self.way_m = way_m + if unchanged && speed_mps > STANDS_MPS { speed_mps * passed_s } else { 0.0 };
         self.stood_s = stood_s + if unchanged && speed_mps <= STANDS_MPS { passed_s } else { 0.0 };
@@ -177,8 +181,8 @@ impl Gone {
 
 /// An unchanged position is held where the aircraft says it moves; a parked one repeats itself rightly. A slow one's rounded position may
 /// repeat, until the aircraft would be elsewhere by its own speeds. Where no speed is reported, or one that fell faster than an aircraft
-/// brakes, a repeat may be such a one, until it lasts. A position that never was another one may stand under time stamps that crawl: it lasts as
-/// long as its reports took to arrive.
+/// brakes, a repeat may be such a one, until it lasts. A position may stand under time stamps that crawl: it lasts as long as its reports took
+/// to arrive.
 pub fn repeated(report: &Report, since: GpsTime, gone: &Gone, limits: &Limits) -> Finding {
     let silent = report.speed_mps.is_nan() || gone.fell.is_some();
     let may_move = if silent { limits.moving_mps.is_finite() } else { report.speed_mps > limits.moving_mps };
@@ -527,6 +531,14 @@ mod tests {
         assert!(findings(&silent, &declared)[3..].iter().all(|each| *each == Stale));
         assert_eq!(findings(&(0..5).map(crawls(70.0)).collect::<Vec<_>>(), &declared), [Plausible, Repeated, Repeated, Stale, Stale]);
         assert_eq!(findings(&(0..60).map(crawls(0.0)).collect::<Vec<_>>(), &declared), [Plausible; 60]);
+        // The same after a minute of flight: its last position under stamps that go on by a millisecond, and by four.
+        let flies = |k: i64| report(k - 60, 70.0 * k as f64, f64::NAN);
+        for step_ns in [1_000_000, 4_000_000] {
+            let last = |k: i64| Report { time: GpsTime::from_nanoseconds(k * step_ns), ..flies(60) };
+            let verdicts = findings(&(0..60).map(flies).chain((0..60).map(last)).collect::<Vec<_>>(), &declared);
+            assert!(verdicts[..63].iter().all(|each| *each == Plausible), "{step_ns}");
+            assert!(verdicts[63..].iter().all(|each| *each == Stale), "{step_ns}: {:?}", &verdicts[60..]);
+        }
         // Where nobody declares how often reports come, a fast table repeats its position.
         assert_eq!(findings(&silent, &LIMITS), [Plausible; 60]);
         // Reports at half the period or more are no crawl; nor is a position that repeats between two others.

@@ -232,8 +232,12 @@ impl Line<'_> {
             return variance.map(|variance| [variance, 0.0, variance, 0.0, 0.0, variance]);
         }
         let [ee, en, nn, eu, nu, uu] = terms.map(|term| term.unwrap_or(f64::NAN));
-        // A NaN of either is a NaN: `max` would pass it over.
-        let least = |term: f64| variance.map_or(term, |least| if least <= term { term } else { least.max(least + 0.0 * term) });
+        // What is below zero or no number is no variance, whatever stands beside it; of a NaN of the deviation `max` says nothing.
+        let least = |term: f64| match variance {
+            Some(_) if !(term >= 0.0) => f64::NAN,
+            Some(least) if !(least <= term) => least + 0.0 * term,
+            _ => term,
+        };
         Some([least(ee), en, least(nn), eu, nu, least(uu)])
     }
 }

@@ -21,7 +21,6 @@ from navbound.read.tables.columns import POSITION_TIME
 from navbound.run.pieces.flights import Flights
 from navbound.storage.tables import whole_tracks
 from navbound.table.columns import COVARIANCE, HORIZONTAL, VARIANCES
-from navbound.units import EARTH_RADIUS_M
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -58,10 +57,6 @@ def is_large(path: Path, piece_rows: int | None) -> bool:
     return is_text_table(path, LARGE_BYTES if piece_rows is None else 0)
 
 
-LEAST_VARIANCE_M2 = (float(np.finfo(np.float64).eps) * EARTH_RADIUS_M) ** 2
-"""A variance below it counts as zero: a position in radians has a last bit of 1.4 nm on the ground. Derived: 2^-52 rad. [m2]"""
-
-
 def covariance_status(epochs: pl.DataFrame) -> pl.DataFrame:
     """Status of epochs whose position may be believed, but not the covariance. Written so that a NaN is on the bad side."""
     ee, en, nn = (pl.col(name) for name in HORIZONTAL)
@@ -73,7 +68,7 @@ def covariance_status(epochs: pl.DataFrame) -> pl.DataFrame:
         pl.when(~believed).then(pl.lit(None, pl.String))
         .when(pl.any_horizontal(c.is_null() for c in (ee, nn, en))).then(pl.lit("no_covariance"))
         .when(~positive).then(pl.lit("not_a_covariance"))
-        .when(pl.any_horizontal(pl.col(name) < LEAST_VARIANCE_M2 for name in VARIANCES)).then(pl.lit("zero_covariance"))
+        .when(pl.any_horizontal(pl.col(name) < _core.LEAST_VARIANCE_M2 for name in VARIANCES)).then(pl.lit("zero_covariance"))
     )  # fmt: skip
     epochs = status.overridden(epochs, epochs.select(fault.alias("reason_id"))["reason_id"])
     return epochs.with_columns(pl.when(pl.col("status").is_in(status.USABLE)).then(pl.col(c)).alias(c) for c in COVARIANCE)

@@ -459,7 +459,7 @@ mod tests {
             let line: [f64; 3] = core::array::from_fn(|k| sent[k] - place[k]);
             let length = line.iter().map(|c| c * c).sum::<f64>().sqrt();
             for k in 0..3 {
-                // The satellite moves some 250 m on the way of 22 000 km, 1e-5 of it; what is asked is a millimetre.
+                // The satellite moves some 250 m on the way of 22 000 km, 1e-5 of it; the limit is a millimetre.
                 assert!((unit[k][l] - line[k] / length).abs() < 4e-11, "satellite {i}, axis {k}");
             }
         }
