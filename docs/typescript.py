@@ -1,9 +1,10 @@
-"""Pydantic records as TypeScript interfaces, for web/src/records.gen.ts."""
+"""Pydantic records as TypeScript interfaces, and sentences as constants, for web/src/records.gen.ts."""
 
 from __future__ import annotations
 
 import ast
 import inspect
+import json
 import textwrap
 import types
 import typing
@@ -11,20 +12,25 @@ from types import ModuleType
 
 from navbound.records import faults, groups, maps, performance, procedure, run, verdict
 from navbound.records.base import Record
+from navbound.rnp import alerts
 
-MODULES = (verdict, faults, groups, performance, procedure, run, maps)
+MODULES = (alerts, verdict, faults, groups, performance, procedure, run, maps)
 """Modules of records that a page receives, in the order of the file."""
 
 
 def records_page(_: str = "") -> str:
     """web/src/records.gen.ts: every record that a page receives, with the names, types and words of Python."""
-    parts = ["// Written by ./dev generate from python/navbound/records. Numbers that do not exist are null.", ""]
+    parts = [
+        "// Written by ./dev generate from python/navbound/records and python/navbound/rnp/alerts.py. Numbers that do not exist are null.",
+        "",
+    ]
     named: dict[object, str] = {}
     for module in MODULES:
         for name, words in aliases(module).items():
             if words not in named:
                 named[words] = name
                 parts += [f"export type {name} = {written(words, {})};", ""]
+        parts += [line for name, words in sentences(module).items() for line in (constant(name, words), "")]
         for record in records(module).values():
             parts += [interface(record, named), ""]
     return "\n".join(parts)
@@ -42,6 +48,16 @@ def records(module: ModuleType) -> dict[str, type[Record]]:
 def aliases(module: ModuleType) -> dict[str, object]:
     """Lists of words that a module names."""
     return {name: words for name, words in vars(module).items() if typing.get_origin(words) is typing.Literal}
+
+
+def sentences(module: ModuleType) -> dict[str, dict[str, str]]:
+    """Dictionaries of sentences that a module declares, by the names of their constants."""
+    return {name: words for name, words in vars(module).items() if name.isupper() and isinstance(words, dict)}
+
+
+def constant(name: str, words: dict[str, str]) -> str:
+    """Sentences by their ids, as a constant."""
+    return "\n".join([f"export const {name} = {{", *(f"    {id_}: {json.dumps(text)}," for id_, text in words.items()), "} as const;"])
 
 
 def interface(record: type[Record], named: dict[object, str]) -> str:

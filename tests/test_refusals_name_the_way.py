@@ -42,10 +42,10 @@ def test_a_misspelt_command_stays_as_the_parser_words_it(monkeypatch: pytest.Mon
     assert _refused(monkeypatch, "demos") == "No such command 'demos'. Did you mean 'demo'?"
 
 
-@pytest.mark.parametrize("point", ["48.99,2.57,120", "4189135,188029", "4189.1,188.0,4789.9"])
+@pytest.mark.parametrize("point", ["48.99,182.57,120", "4189135,188029", "4189.1,188.0,4789.9"])
 def test_a_truth_that_is_no_earth_fixed_point_is_refused_with_what_is_allowed(point: str) -> None:
     with pytest.raises(
-        InputError, match=r"truth = .* \[m\] is not accepted; expected X,Y,Z, Earth-fixed, .* \(no latitude and longitude\)"
+        InputError, match=r"truth = .* is not accepted; expected LAT,LON,H in degrees and metres .*, X,Y,Z in metres, Earth-fixed, "
     ):
         truth_of(point, 0.01)
 

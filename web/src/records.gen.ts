@@ -1,4 +1,17 @@
-// Written by ./dev generate from python/navbound/records. Numbers that do not exist are null.
+// Written by ./dev generate from python/navbound/records and python/navbound/rnp/alerts.py. Numbers that do not exist are null.
+
+export type AlertKind = "caution" | "warning" | "unavailable" | "quiet" | "clock" | "garbled" | "fleet_full" | "source_lost";
+
+export const ALERT_WORDS = {
+    caution: "accuracy bound not within RNP",
+    warning: "integrity bound not within twice RNP",
+    unavailable: "no usable epoch: loss of monitoring",
+    quiet: "the source sends nothing",
+    clock: "the times of the source do not agree with their arrival",
+    garbled: "a tenth of the frames of the source is damaged",
+    fleet_full: "more tracks than are watched",
+    source_lost: "the connection to the source is lost",
+} as const;
 
 export type VerdictId = "inside" | "outside" | "not_shown" | "not_believable" | "nothing_judged";
 

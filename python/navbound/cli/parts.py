@@ -63,7 +63,10 @@ Files = Annotated[
 ]
 Truth = Annotated[
     str | None,
-    typer.Option(help="A file with true positions, joined by time; or X,Y,Z of a fixed point (Earth-fixed, metres)."),
+    typer.Option(
+        help="A file with true positions, joined by time; or a fixed point: LAT,LON,H (degrees, metres above the WGS-84 ellipsoid) "
+        "or X,Y,Z (Earth-fixed, metres)."
+    ),
     Selectable(files=True, free=POINT),
 ]
 TruthTolerance = Annotated[float | None, typer.Option(help="How far apart in time a truth epoch may be. [default: 0.01]")]

@@ -52,11 +52,11 @@ def show(run: Run, *, json: bool) -> None:
         raise typer.Exit(status)
 
 
-def _print_procedure(flight: ProcedureFlown) -> None:
+def _print_procedure(flight: ProcedureFlown, name: str) -> None:
     """Legs and answers of one flight against a procedure."""
     from rich.table import Table  # noqa: PLC0415  (only where a procedure was flown)
 
-    table = Table(title=f"{flight.track}{f', {flight.line}' if flight.line else ''}")
+    table = Table(title=f"{name}{f', {flight.line}' if flight.line else ''}")
     for heading in ("leg", "RNP", "from", "n", "mean, m", "95 %, m", "largest, m", "/ RNP", "inside", "bound inside", "in turns"):
         table.add_column(heading, overflow="fold")
     for leg in flight.legs:
@@ -81,7 +81,7 @@ def _print(run: Run) -> None:
     out_console.print(summary.title, style="bold", markup=False)
     out_console.print(summary.verdict.words, markup=False, highlight=False)
     for flight in summary.procedures:
-        _print_procedure(flight)
+        _print_procedure(flight, summary.name_of(flight.track))
     out_console.print("Assumed and found:", markup=False)
     for assumption in summary.assumptions:
         out_console.print(f"  - {assumption}", markup=False, highlight=False)
@@ -98,7 +98,7 @@ def _print(run: Run) -> None:
             f"Alerts: {cautions} cautions, {warnings} warnings, {unavailable} losses of monitoring, over {len(summary.tracks)} tracks."
         )
         for fault in summary.faults[:LISTED_FAULTS]:
-            out_console.print(f"{fault.track}, {fault.kind}: {fault.words}", markup=False, highlight=False)
+            out_console.print(f"{summary.name_of(fault.track)}, {fault.kind}: {fault.words}", markup=False, highlight=False)
         if len(summary.faults) > LISTED_FAULTS:
             out_console.print(f"... and {len(summary.faults) - LISTED_FAULTS} more in summary.json.")
     if run.path is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -31,6 +32,15 @@ _OF_TRUTH = {"truth_time": "time", "truth_lat_rad": "est_lat_rad", "truth_lon_ra
 TOLERANCE_S = 0.01
 """How far apart in time an estimate and its truth may lie. At 70 m/s a hundredth of a second is 0.7 m."""
 
+_LIMITS = ((-90.0, 90.0), (-180.0, 180.0), (-1e3, 1e5))
+"""Of a latitude and a longitude [deg], and of a height [m]."""
+_POINTS = (
+    "LAT,LON,H in degrees and metres above the ellipsoid (latitude within 90, longitude within 180, height from -1000 to 100000), "
+    "X,Y,Z in metres, Earth-fixed, of a point within 100 km of the Earth's surface, or a file"
+)
+_SEMI_MAJOR_M, _FLATTENING = 6378137.0, 1.0 / 298.257223563
+"""Of the WGS-84 ellipsoid (NIMA TR8350.2, table 3.1)."""
+
 
 @dataclass(frozen=True)
 class Truth:
@@ -46,12 +56,15 @@ class Truth:
         How far apart in time an estimate and its recorded truth may lie. [s]
     columns : mapping
         What the caller declares of columns, of the estimates and of the truth.
+    place : str
+        A fixed point in words.
     """
 
     stated: str | None
     ecef_m: NDArray[np.float64] | None
     tolerance_s: float
     columns: Mapping[str, str] = field(default_factory=dict)
+    place: str = ""
 
     @property
     def columns_of_estimates(self) -> Mapping[str, str]:
@@ -67,12 +80,14 @@ class Truth:
 
 
 def truth_of(source: str | Path | None, tolerance_s: float, columns: Mapping[str, str] | None = None) -> Truth:
-    """Read ``X,Y,Z`` (Earth-fixed, metres), or take a file's name.
+    """Read ``X,Y,Z`` (Earth-fixed, metres) or ``LAT,LON,H`` (degrees, metres above the WGS-84 ellipsoid), or take a file's name.
+
+    Three numbers within 100 km of the Earth's surface as ``X,Y,Z`` are that; no height is as large.
 
     Raises
     ------
     InputError
-        Three numbers that are no place near the Earth's surface.
+        Numbers that are neither.
     """
     if source is None:
         return Truth(None, None, tolerance_s, columns or {})
@@ -80,11 +95,23 @@ def truth_of(source: str | Path | None, tolerance_s: float, columns: Mapping[str
     number = r"\s*[-+]?\d+(?:\.\d*)?\s*"
     if re.fullmatch(f"{number}(?:,{number})+", text) is None or Path(text).exists():
         return Truth(text, None, tolerance_s, columns or {})
-    point = np.array([float(part) for part in text.split(",")])
-    if len(point) != 3 or not 6.3e6 < float(np.linalg.norm(point)) < 6.5e6:
-        allowed = "X,Y,Z, Earth-fixed, of a point within 100 km of the Earth's surface (no latitude and longitude), or a file"
-        raise InputError("truth", text, "m", allowed)
-    return Truth(text, point, tolerance_s, columns or {})
+    values = [float(part) for part in text.split(",")]
+    if len(values) == 3 and 6.3e6 < math.hypot(*values) < 6.5e6:
+        return Truth(text, np.array(values), tolerance_s, columns or {}, f"{text} m, Earth-fixed")
+    if len(values) != 3 or any(not low <= value <= high for value, (low, high) in zip(values, _LIMITS, strict=True)):
+        raise InputError("truth", text, domain=_POINTS)
+    lat_deg, lon_deg, h_m = values
+    words = f"latitude {lat_deg:.12g} deg, longitude {lon_deg:.12g} deg, height {h_m:.12g} m above the ellipsoid (WGS-84)"
+    return Truth(text, _earth_fixed(math.radians(lat_deg), math.radians(lon_deg), h_m), tolerance_s, columns or {}, words)
+
+
+def _earth_fixed(lat_rad: float, lon_rad: float, h_m: float) -> NDArray[np.float64]:
+    """Earth-fixed position [m] of latitude, longitude and height (NIMA TR8350.2, equation 4-14); the inverse of ``gnss.geodetic``."""
+    eccentricity_2 = _FLATTENING * (2.0 - _FLATTENING)
+    normal_m = _SEMI_MAJOR_M / math.sqrt(1.0 - eccentricity_2 * math.sin(lat_rad) ** 2)
+    level_m = (normal_m + h_m) * math.cos(lat_rad)
+    up_m = (normal_m * (1.0 - eccentricity_2) + h_m) * math.sin(lat_rad)
+    return np.array([level_m * math.cos(lon_rad), level_m * math.sin(lon_rad), up_m])
 
 
 def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str, Reading | None, TruthDoubts]:
@@ -124,7 +151,7 @@ def at_fixed_point(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, Tr
 
 def fixed_words(truth: Truth, doubts: TruthDoubts) -> str:
     """What is said of a fixed point."""
-    return _sentences(f"Truth: the fixed point {truth.stated} m, Earth-fixed.", doubts.words)
+    return _sentences(f"Truth: the fixed point {truth.place}.", doubts.words)
 
 
 def _recorded(truth: Truth) -> Reading:

@@ -385,6 +385,10 @@ class Summary(Record):
     satellites: list[SatelliteSummary] = Field(default=[])
     """Where positions were solved: every satellite heard."""
 
+    def name_of(self, track: str) -> str:
+        """The name under which people read of a track: its label."""
+        return next((each.label for each in self.tracks if each.track == track), track)
+
 
 class RunRecord(Record):
     """run.json: what it takes to do it again."""

@@ -85,7 +85,8 @@ def material(
     procedure : Flown, optional
         Instead of `path`: a published procedure, whose legs have their own RNP; `requirement` and `rnp_m` then have no part in it.
     truth : str or path, optional
-        Recording of the true positions, in a form as `files`; or ``X,Y,Z`` of a receiver that does not move (Earth-fixed, metres).
+        Recording of the true positions, in a form as `files`; or of a receiver that does not move
+        ``LAT,LON,H`` (degrees, metres above the WGS-84 ellipsoid) or ``X,Y,Z`` (Earth-fixed, metres).
     truth_tolerance_s : float
         How far apart in time an estimate and its truth may lie. [s]
     sigma_m : float, optional

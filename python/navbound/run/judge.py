@@ -16,6 +16,7 @@ from navbound.errors import InputError
 from navbound.judge import Judges, with_levels
 from navbound.judge import Settings as Rules
 from navbound.records.run import RunRecord
+from navbound.rnp.alerts import ALERT_WORDS
 from navbound.rnp.exposure import LONGEST_STEP_S
 from navbound.run.directory import Run
 from navbound.run.settings import Settings
@@ -149,9 +150,4 @@ def _with_points(events: pl.DataFrame, points: list[EventSummary]) -> pl.DataFra
 
 
 def _in_words(events: pl.DataFrame) -> pl.DataFrame:
-    sentence = {
-        "caution": "accuracy bound not within RNP",
-        "warning": "integrity bound not within twice RNP",
-        "unavailable": "no usable epoch: loss of monitoring",
-    }
-    return events.with_columns(pl.col("kind").replace_strict(sentence).alias("words"))
+    return events.with_columns(pl.col("kind").replace_strict(ALERT_WORDS).alias("words"))

@@ -16,6 +16,11 @@ export interface DeclaredChart {
     lines: { column: NumberColumn; label: string; about: string; limit: boolean }[];
 }
 
+/** The name under which people read of a track: its label. */
+export function nameOf(summary: Summary, track: string): string {
+    return summary.tracks.find((t) => t.track === track)?.label ?? track;
+}
+
 export interface PackedTrack {
     track: string;
     n: number;

@@ -1,5 +1,6 @@
 // Alerts in force with acknowledge, the wait to the next caution, and the list of everything that was raised and cleared.
 
+import { ALERT_WORDS } from "../records.gen.ts";
 import { button, el, svg } from "../show/dom.ts";
 import { clock, duration, metres } from "../show/format.ts";
 import { say, span, type Part } from "./parts.ts";
@@ -7,11 +8,6 @@ import { plainName, present, severity, type Model, type Transition } from "./sta
 
 const BLINK_S = 10;
 const MOST_SHOWN = 200;
-
-const WHAT: Record<string, string> = {
-    warning: "integrity bound not within 2 RNP", caution: "accuracy bound not within RNP", unavailable: "not monitored: no usable position", quiet: "the source sends nothing",
-    clock: "times of the source cannot be", garbled: "a tenth of the source's frames is damaged", fleet_full: "more tracks than are watched", source_lost: "the connection to the source is lost",
-};
 
 function symbol(kind: string): SVGElement {
     const shape = severity(kind) === 0 ? "M8 1 L15 15 L1 15 Z" : "M8 1 L15 8 L8 15 L1 8 Z";
@@ -85,7 +81,7 @@ function row(t: Transition, model: Model, acknowledge: (alert: string) => void):
     const who = t.track === null ? "source" : plainName(t.track);
     const press = button(done ? "Acknowledged" : "Acknowledge", { "aria-label": `${done ? "Acknowledged" : "Acknowledge"}: ${word(t.kind)} of ${who}`, disabled: done }, () => acknowledge(t.alert));
     return el("li", { class: "alert-row", "data-alert": t.alert, "data-tone": severity(t.kind) === 0 ? "warning" : "caution" },
-        symbol(t.kind), el("strong", { class: "alert-kind" }, word(t.kind)), el("span", { class: "alert-what" }, `${t.track !== null && model.snapshot!.tracks.length < 2 ? "" : `${who}: `}${WHAT[t.kind] ?? t.kind}`),
+        symbol(t.kind), el("strong", { class: "alert-kind" }, word(t.kind)), el("span", { class: "alert-what" }, `${t.track !== null && model.snapshot!.tracks.length < 2 ? "" : `${who}: `}${ALERT_WORDS[t.kind]}`),
         el("span", { class: "alert-since" }, `since ${clock(t.annunciation_utc_s, true)} `, el("span", { class: "alert-for" })), press, el("span", { class: "alert-details" }, details(t)));
 }
 

@@ -1,5 +1,7 @@
 // What the page knows and how far it may be believed: pure functions and one record, without a browser.
 
+import type { AlertKind } from "../records.gen.ts";
+
 export type Row = (number | string | boolean | null)[];
 
 /** A transition as the server sends it. */
@@ -9,7 +11,7 @@ export interface Transition {
     alert: string;
     /** Null for an alert of the source itself. */
     track: string | null;
-    kind: string;
+    kind: AlertKind;
     transition: "raised" | "cleared" | "expired";
     annunciation_utc_s: number;
     onset_utc_s: number;

@@ -1,6 +1,6 @@
 // The map: coast, route, tunnel to scale, the track by alert state, and the aircraft with its error at the cursor.
 
-import type { Scene } from "../data/scene.ts";
+import { METRES_PER_NM, type Scene } from "../data/scene.ts";
 import type { Ground } from "../data/others.ts";
 import { missing } from "../chart/missing.ts";
 import { button, el, freshId } from "../show/dom.ts";
@@ -144,10 +144,10 @@ export function scaleBar(bar: HTMLElement, view: View, shapes: Pick<Shapes, "pla
     const metresPerPixel = Math.hypot(turn * per.east, (b.lat_rad - a.lat_rad) * per.north) / 100;
     if (!(metresPerPixel > 0)) return;
     // Up to one mile in metres, beyond in nautical miles.
-    const unit = metresPerPixel * 120 > 1852 ? 1852 : 1;
+    const unit = metresPerPixel * 120 > METRES_PER_NM ? METRES_PER_NM : 1;
     const length = roundDown((120 * metresPerPixel) / unit) * unit;
     bar.style.width = `${length / metresPerPixel}px`;
-    bar.textContent = unit === 1 ? wholeMetres(length) : nauticalMiles(length, length < 1852 ? 1 : 0);
+    bar.textContent = unit === 1 ? wholeMetres(length) : nauticalMiles(length, length < METRES_PER_NM ? 1 : 0);
 }
 
 function sentence(scene: Scene, exaggeration: number): string {

@@ -3,14 +3,14 @@
 import { clock, count, duration, metres, NONE, nauticalMiles, plain, rnpName, signedMetres } from "../show/format.ts";
 import { el } from "../show/dom.ts";
 import { utcOf } from "../data/events.ts";
-import type { HeightResult, LegFlown, Payload, ProcedureFlown } from "../data/records.ts";
+import { nameOf, type HeightResult, type LegFlown, type Payload, type ProcedureFlown } from "../data/records.ts";
 import { sortable, type Column } from "./sortable.ts";
 
 /** One section a flight; null where no procedure was flown against. */
 export function procedures(payload: Payload): HTMLElement | null {
     const flights = payload.summary.procedures;
     if (flights.length === 0) return null;
-    const parts = flights.flatMap((flight, i) => [...(flights.length > 1 ? [el("h3", {}, flight.track)] : []), ...one(flight, i, payload)]);
+    const parts = flights.flatMap((flight, i) => [...(flights.length > 1 ? [el("h3", {}, nameOf(payload.summary, flight.track))] : []), ...one(flight, i, payload)]);
     return el("section", { id: "procedure" }, el("h2", {}, "Against the published procedure"), ...parts);
 }
 

@@ -1,6 +1,6 @@
 // The verdict: state and words first, then the few numbers behind it.
 
-import type { Belief, BoundCheck, Payload, Verdict, VerdictId, Worst } from "../data/records.ts";
+import { nameOf, type Belief, type BoundCheck, type Payload, type Verdict, type VerdictId, type Worst } from "../data/records.ts";
 import { utcOf } from "../data/events.ts";
 import { about } from "../chart/methods.ts";
 import { el, svg, valueOf } from "../show/dom.ts";
@@ -77,7 +77,7 @@ function story(payload: Payload): HTMLElement | null {
     const { faults, tracks } = payload.summary;
     if (faults.length === 0) return null;
     const several = tracks.length > 1;
-    const outcomes = faults.slice(0, SHOWN_FAULTS).map((f) => `${several ? `${f.track}, ` : ""}${f.kind}: ${f.outcome_words}.`);
+    const outcomes = faults.slice(0, SHOWN_FAULTS).map((f) => `${several ? `${nameOf(payload.summary, f.track)}, ` : ""}${f.kind}: ${f.outcome_words}.`);
     const of = faults[0]!.track;
     const moments = faults.filter((f) => f.track === of).flatMap((f) => f.moments).sort((a, b) => a.time_ns - b.time_ns).slice(0, SHOWN_MOMENTS);
     return el("div", { class: "story" }, el("p", {}, el("strong", {}, several ? `What happened on ${of}` : "What happened")),
@@ -112,7 +112,7 @@ function contained(check: BoundCheck): HTMLElement {
 function worst(label: string, key: string, w: Worst, payload: Payload): HTMLElement {
     const when = utcOf(w.time_ns, payload);
     const along = w.along_m === null ? null : `${nauticalMiles(w.along_m, 1)} along the path`;
-    const many = payload.summary.tracks.length > 1 ? payload.summary.tracks.find((t) => t.track === w.track)?.label ?? w.track : null;
+    const many = payload.summary.tracks.length > 1 ? nameOf(payload.summary, w.track) : null;
     const where = [`${clock(when, true)} UTC ${date(when)}`, many, w.phase, along, place(w.lat_rad, w.lon_rad)].filter((x) => x !== null).join(" · ");
     return el("div", { class: "fact" }, el("dt", {}, label),
         el("dd", {}, valueOf(`${key}.margin_m`, w.margin_m, signedMetres(w.margin_m)), w.limit_m < SHORT_M ? null : el("span", { class: "also" }, nauticalMiles(w.margin_m))),

@@ -60,7 +60,7 @@ class Options:
     levels : sequence of names or Level
         What is evaluated.
     truth : str or path, optional
-        ``X,Y,Z`` (Earth-fixed, metres) or a recording.
+        ``LAT,LON,H`` (degrees, metres above the WGS-84 ellipsoid), ``X,Y,Z`` (Earth-fixed, metres) or a recording.
     truth_tolerance_s : float
         How far apart in time an estimate and its truth may lie. [s]
     columns : mapping, optional

@@ -131,7 +131,7 @@ def verdict_of(
         n_truth_doubted=material.truth_doubts.n,
         truth_doubts=material.truth_doubts.words,
     )
-    words, lead = verdict_words(verdict, judge, risks, material.covariance)
+    words, lead = verdict_words(verdict, judge, risks, material.covariance, material.labels)
     of_levels = protection_words(protection)
     return verdict.model_copy(update={"words": f"{words}{of_levels}", "lead": f"{lead}{of_levels}"})
 

@@ -16,7 +16,7 @@ from navbound.status import REASONS
 from navbound.time import utc_text
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from navbound.evaluation import Nees, Pit
     from navbound.records.run import CovarianceOrigin, MethodResult, ProtectionSummary, RegionCoverage, Verdict, Worst
@@ -32,8 +32,13 @@ HEADLINES: dict[VerdictId, str] = {
 """The first words of each verdict."""
 
 
-def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, float], covariance: CovarianceOrigin) -> tuple[str, str]:
-    """What a navigator wants to know first, in sentences: all of them, and those whose numbers a page does not show beside them."""
+def verdict_words(
+    verdict: Verdict, judged: MethodResult, risks: tuple[float, float], covariance: CovarianceOrigin, labels: Mapping[str, str]
+) -> tuple[str, str]:
+    """What a navigator wants to know first, in sentences: all of them, and those whose numbers a page does not show beside them.
+
+    A track has its name of `labels`, as everywhere else.
+    """
     assumed = _assumed(verdict, covariance)
     first = _first(verdict, risks)
     parts = [f"{assumed}: {first[0].lower()}{first[1:]}" if assumed else first]
@@ -55,7 +60,7 @@ def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, fl
         )
     parts += unread_words(verdict.unread)
     judged_by = f"Judged by {judged.title} ({judged.id}, {judged.provenance})."
-    worst = [] if verdict.worst_accuracy is None else [_worst(verdict.worst_accuracy)]
+    worst = [] if verdict.worst_accuracy is None else [_worst(verdict.worst_accuracy, labels)]
     of_truth, of_truth_beside = truth_words(verdict), truth_words(verdict, beside_numbers=True)
     words = [*parts[:n_before_worst], *worst, *parts[n_before_worst:], judged_by, *of_truth]
     return " ".join(words), " ".join([*parts, *of_truth_beside])
@@ -212,12 +217,12 @@ def _contradicted(verdict: Verdict) -> list[str]:
     return [] if named_first else contradicted_words(belief)
 
 
-def _worst(worst: Worst) -> str:
+def _worst(worst: Worst, labels: Mapping[str, str]) -> str:
     where = f" in {worst.phase}" if worst.phase else ""
     sign = "margin" if worst.margin_m >= 0 else "excess"
     return (
         f"Worst {sign} {length(abs(worst.margin_m))} (bound {length(worst.bound_m)}, limit {length(worst.limit_m)}) "
-        f"at {utc_text(worst.time_ns)} UTC{where}, track {worst.track}."
+        f"at {utc_text(worst.time_ns)} UTC{where}, track {labels.get(worst.track, worst.track)}."
     )
 
 
