@@ -265,3 +265,18 @@ def test_a_level_that_is_missing_from_the_first_epoch_on_warns() -> None:
     assert [Judge(settings()).step(epoch | {"hpl_m": level}).alert for level in (None, math.nan)] == ["warning", "warning"]
     assert Judge(settings(), with_levels=True).step(epoch).alert == "warning"
     assert Judge(settings(), with_levels=False).step(epoch | {"hpl_m": None}).alert == "normal"
+
+
+@pytest.mark.parametrize(
+    ("key", "words"),
+    [("fte", "fte_m"), ("cov_ee", "cov_ee_m2"), ("HPL_M", "epoch table"), ("alert_flag", "epoch table"), (7, "epoch table")],
+)
+def test_a_key_that_nothing_knows_is_refused_by_its_name(key: Any, words: str) -> None:
+    epoch = {"time_ns": 10**18, "course_rad": 0.0, "fte_m": 0.0, "rnp_m": 185.2, "cov_ee_m2": 9.0, "cov_en_m2": 0.0, "cov_nn_m2": 9.0}
+    assert Judge(settings()).step(epoch).status == "ok"
+    # A row of the epoch table has columns that are not judged.
+    assert Judge(settings()).step(epoch | {"track": "a", "est_lat_rad": 0.8}).status == "ok"
+    with pytest.raises(InputError, match=str(key)) as refusal:
+        Judge(settings()).step(epoch | {key: 900.0})
+    assert words in str(refusal.value)
+    assert "hpl_m" in str(refusal.value)

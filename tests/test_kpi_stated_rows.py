@@ -125,3 +125,13 @@ def test_no_level_beside_ok_shows_nothing(levels: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("row", ["nan,,1,15,22,10,ok,", "0,0,1,inf,22,10,ok,", "0,0,1,,,10,ok,"])
 def test_what_is_not_written_is_no_fault_of_the_file(row: str, tmp_path: Path) -> None:
     assert verdict(tmp_path, row).id == "inside"
+
+
+@pytest.mark.parametrize(("n_sv", "status", "has"), [(3, "", False), (4, "", True), (3, ",ok", True)])
+def test_a_row_on_too_few_satellites_has_no_level(n_sv: int, status: str, has: bool, tmp_path: Path) -> None:
+    """Four determine a position with its clock; a status of the table's own counts, as in tables of positions."""
+    rows = ["time,nse_e_m,nse_n_m,nse_u_m,hpl_m,vpl_m,n_sv" + (",status" if status else "")]
+    rows += [f"{T0 + k},0.3,0.4,1,15,22,{n_sv if 20 <= k < 30 else 10}{status}" for k in range(N)]
+    (tmp_path / "levels.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    judged = navbound.evaluate([tmp_path / "levels.csv"], levels="LPV-200").summary.verdict
+    assert (judged.id, judged.n_judged) == (("inside", N) if has else ("not_shown", N - 10))

@@ -300,6 +300,18 @@ def test_of_a_covariance_and_a_deviation_the_larger_counts(tmp_path: Path) -> No
     assert lived_lines(tmp_path / "c", sigma_m=None)[1] == {"warning"}
 
 
+@pytest.mark.parametrize("variance_m2", [-64.0, -1e-320])
+def test_a_variance_below_zero_is_none_whatever_deviation_stands_beside_it(variance_m2: float, tmp_path: Path) -> None:
+    assert lived_lines(tmp_path / "alone", cov_ee_m2=variance_m2) == ({"invalid_number"}, {"unavailable"})
+    assert lived_lines(tmp_path / "beside", cov_ee_m2=variance_m2, sigma_m=5.0) == ({"invalid_number"}, {"unavailable"})
+
+
+@pytest.mark.parametrize("variance_m2", [0.0, 1e-320, 1.9e-18])
+def test_a_variance_below_the_last_bit_of_a_position_is_zero(variance_m2: float, tmp_path: Path) -> None:
+    assert lived_lines(tmp_path, cov_ee_m2=variance_m2)[0] == {"degraded"}
+    assert lived_lines(tmp_path / "above", cov_ee_m2=2.1e-18)[0] == {"ok"}
+
+
 def test_a_journal_that_was_cut_says_how_much_is_not_judged(tmp_path: Path) -> None:
     content = frames(fleet(20, 30), heartbeats=True)
     source = recorded(tmp_path / "in", content[:-7])

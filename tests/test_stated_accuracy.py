@@ -38,12 +38,18 @@ def test_an_epu_beyond_the_covariance_is_against_it(tmp_path: Path, epu_m: float
         ("horizontal_accuracy", -300.0, "not_shown"),
         ("CEP50", math.inf, "not_shown"),
         ("NSE", 3000.0, "not_shown"),
+        ("err2d", 3000.0, "not_shown"),
+        ("err2d", 1.0, "inside"),
+        ("error2D", 3000.0, "not_shown"),
+        ("HPE95", 3000.0, "not_shown"),
+        ("hAcc95", 3000.0, "not_shown"),
         # No lengths, or none of the position across the ground.
         ("speed_accuracy", 300.0, "inside"),
         ("vAcc", 300.0, "inside"),
         ("headAcc", 300.0, "inside"),
         ("acc_x", 300.0, "inside"),
         ("error_code", 300.0, "inside"),
+        ("verr95", 3000.0, "inside"),
         ("std_yaw", 300.0, "inside"),
         ("accuracy (deg)", 300.0, "inside"),
     ],
@@ -117,3 +123,25 @@ def test_the_sentence_of_a_receiver_about_its_error_is_named(tmp_path: Path) -> 
     summary = navbound.analyze(path).summary
     assert summary.verdict.unread == ["$PGRME (estimated position error)"]
     assert not any("states no accuracy" in each for each in summary.assumptions)
+
+
+@pytest.mark.parametrize(("name", "value"), [("off_track", 3000.0), ("offtrack_nm", -2.0), ("crosstrack_error", -3000.0), ("HPE", 3000.0)])
+def test_a_distance_off_the_track_is_an_error(tmp_path: Path, name: str, value: float) -> None:
+    verdict = navbound.analyze(table(tmp_path / "a.csv", N, sigma_m=SIGMA_M, added={name: np.full(N, value)})).summary.verdict
+    assert (verdict.id, verdict.n_stated_beyond) == ("not_shown", N)
+
+
+@pytest.mark.parametrize("name", ["residual", "misfit_m", "ANP", "pos_dev", "unc", "ci95"])
+def test_a_name_that_may_be_an_error_is_named_and_not_compared(tmp_path: Path, name: str) -> None:
+    verdict = navbound.analyze(table(tmp_path / "a.csv", N, sigma_m=SIGMA_M, added={name: np.full(N, 3000.0)})).summary.verdict
+    assert (verdict.id, verdict.unread) == ("inside", [name])
+    assert f"accuracy or integrity: {name}" in verdict.words
+
+
+def test_a_text_among_the_numbers_that_are_compared_is_counted(tmp_path: Path) -> None:
+    texts = ["1.5"] * N
+    texts[7], texts[8], texts[9], texts[10] = "12 km", "bad", "", "nan"
+    summary = navbound.analyze(table(tmp_path / "a.csv", N, sigma_m=SIGMA_M, added={"hAcc": texts})).summary
+    assert summary.verdict.id == "inside"
+    (counted,) = [each for each in summary.rejected if "hAcc" in each.reason]
+    assert (counted.reason, counted.count, counted.example) == ("hAcc: not a number; not compared", 2, "12 km")

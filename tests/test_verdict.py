@@ -260,6 +260,27 @@ def test_every_verdict_names_every_bound_that_truth_contradicts(
     assert verdict.words.count("the 99.999 % sphere contains ") == 1
 
 
+def test_a_vertical_bound_whose_interval_excludes_its_claim_is_not_inside(tmp_path: Path) -> None:
+    """24 of 400 heights are 2 km off, all at once, so that they are one error or two: not beyond doubt, but below the claim."""
+    error_m = 3.0 * np.stack([np.cos(np.arange(400) / 200.0), np.sin(np.arange(400) / 200.0)], axis=1)
+    up_m = np.where(np.arange(400) < 24, 2000.0, 0.0)
+    path = table(tmp_path / "a.csv", 400, error_en_m=error_m, error_u_m=up_m, added={"sigma_u_m": np.full(400, 5.0)})
+    verdict = navbound.analyze(path).summary.verdict
+    assert verdict.belief is not None
+    assert (verdict.id, verdict.belief.state) == ("not_shown", "short")
+    assert "The vertical bounds claim more than their intervals allow: the 99.999 % vertical interval contains 94.0 %" in verdict.words
+    assert verdict.words.count("the 99.999 % vertical interval contains") == 1
+
+
+def test_a_vertical_bound_that_chance_may_explain_is_no_claim_beside_inside(tmp_path: Path) -> None:
+    """One of 400 true errors is beyond the 99.999 % interval, which happens in one of 250 runs."""
+    up_m = 5.0 * np.random.default_rng(902).standard_normal(400)
+    path = table(tmp_path / "a.csv", 400, error_en_m=white(400, seed=2), error_u_m=up_m, added={"sigma_u_m": np.full(400, 5.0)})
+    verdict = navbound.analyze(path).summary.verdict
+    assert verdict.id == "inside"
+    assert "This verdict is lateral alone: the vertical claim is withdrawn." in verdict.words
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_a_true_vertical_leaves_the_verdict(tmp_path: Path, seed: int) -> None:
     up = 5.0 * np.random.default_rng(900 + seed).standard_normal(400)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
@@ -11,6 +12,7 @@ from navbound import status as status_list
 from navbound.errors import InputError
 from navbound.judge.settings import ALERTS
 from navbound.rnp import Acceptance, Alert, Counters, Event
+from navbound.table import columns
 from navbound.table.arguments import nanoseconds, number_or_nan
 from navbound.table.arrays import shown
 
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from navbound.judge.settings import Settings
 
 _COLUMNS = _core.judge_columns()
+_KEYS = dict.fromkeys(("time_ns", "status", *_COLUMNS))
 _STATUS = {id_: code for code, id_ in enumerate(status_list.STATUSES)}
 _STATUSES = list(status_list.STATUSES)
 
@@ -57,6 +60,15 @@ class Judged:
     ended: list[Event]
 
 
+def _refuse_unknown(epoch: Mapping[str, Any]) -> None:
+    for key in epoch:
+        if key not in _KEYS and not any(column.name == key for column in columns.EPOCHS):
+            near = difflib.get_close_matches(shown(key), _KEYS, 1)
+            meant = f"; did you mean {near[0]}?" if near else ""
+            domain = f"columns of the epoch table (judged are {', '.join(_KEYS)}){meant}"
+            raise InputError("key of the epoch", shown(key), domain=domain)
+
+
 class Judge:
     """The judge of one aircraft: errors, bounds, risks, state, status and alert, epoch by epoch.
 
@@ -82,13 +94,15 @@ class Judge:
         epoch : mapping
             Values under the names of the epoch table (docs/notation.md): ``time_ns``, ``status`` (``ok`` where it is absent), and what is
             known of ``course_rad``, ``path_angle_rad``, ``fte_m``, ``fte_v_m``, ``rnp_m``, ``cov_*_m2``, ``nse_*_m``, ``hpl_m``. None and
-            NaN are absent values. [SI]
+            NaN are absent values. Other columns of the epoch table are not looked at. [SI]
 
         Raises
         ------
         InputError
+            A key that is no column of the epoch table: it might hold what speaks against the epoch.
             No time, a status that is none, or a value that is no number.
         """
+        _refuse_unknown(epoch)
         time_ns, numbers = nanoseconds("time_ns", epoch.get("time_ns")), [number_or_nan(name, epoch.get(name)) for name in _COLUMNS]
         code = _STATUS.get(cast("str", epoch.get("status", "ok")))
         if code is None:

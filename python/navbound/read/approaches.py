@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -119,6 +119,10 @@ class Landings:
         ``track``, ``approach``, ``runway_name``, ``start`` and ``end`` (GPS ns) of each.
     cross_track, runways, tracks, notes
         As of :class:`Approaches`.
+    n_unjudged : int
+        Passes along a centreline that are no approach, and that no approach of their track covers.
+    due : dict
+        Name of the approach to when it would have passed ``before_min_m`` at its own mean speed (GPS ns).
     """
 
     approaches: pl.DataFrame
@@ -126,6 +130,8 @@ class Landings:
     runways: list[Runway]
     tracks: dict[str, str]
     notes: list[str]
+    n_unjudged: int = 0
+    due: dict[str, int] = field(default_factory=dict)
 
     def between(self, epochs: pl.DataFrame) -> pl.DataFrame:
         """Every epoch of a piece that lies on an approach, in the order of approach and time."""
@@ -144,16 +150,17 @@ def seek(epochs: Table, runways: Sequence[Runway] | None = None, gates: Gates | 
     names = [r.name for r in runways]
     near = [_near(piece, runways, gates, ruled) for piece in pieces(epochs, [*_POINTS, "track", "time_ns", "status"])]
     points = pl.concat(near) if runways and near else pl.DataFrame()
-    segments, left_out = (
-        _segments(points.filter("gated").drop("gated"), gates, names) if runways and near else (pl.DataFrame(), list[str]())
-    )
-    notes += left_out
+    none = pl.DataFrame(), pl.DataFrame()
+    segments, lost = _segments(points.filter("gated").drop("gated"), gates) if runways and near else none
+    notes += _lost_words(lost, names)
     if segments.is_empty():
-        return Landings(pl.DataFrame(), [], [], {}, notes)
+        return Landings(pl.DataFrame(), [], [], {}, notes, lost.height)
     segments = segments.with_columns(pl.col("runway").replace_strict(dict(enumerate(names)), return_dtype=pl.String).alias("runway_name"))
-    approaches = _with_ends(_named(segments), points.filter(~pl.col("gated")), gates)
+    named = _named(segments)
+    approaches = _with_ends(named, points.filter(~pl.col("gated")), gates)
     used = [r for r in runways if r.name in set(approaches["runway_name"])]
-    return Landings(approaches, _statistics(segments), used, dict(approaches.select("approach", "track").iter_rows()), notes)
+    tracks = dict(approaches.select("approach", "track").iter_rows())
+    return Landings(approaches, _statistics(segments), used, tracks, notes, lost.height, _due(named, gates))
 
 
 _POINTS = ("est_lat_rad", "est_lon_rad", "altitude_m", "est_h_m", "ground_track_rad", "vertical_rate_mps")
@@ -269,7 +276,7 @@ def _roughly(points: _Points, runway: Runway, gates: Gates) -> NDArray[np.int64]
     return np.flatnonzero(close)
 
 
-def _segments(gated: pl.DataFrame, gates: Gates, names: list[str]) -> tuple[pl.DataFrame, list[str]]:
+def _segments(gated: pl.DataFrame, gates: Gates) -> tuple[pl.DataFrame, pl.DataFrame]:
     """Gated points of accepted approaches, with ``segment``; of two runways at one time the one flown closer to. And who is left out."""
     points = gated.sort("runway", "track", "time_ns")
     new = (
@@ -293,7 +300,7 @@ def _segments(gated: pl.DataFrame, gates: Gates, names: list[str]) -> tuple[pl.D
     failed = pl.coalesce(pl.when(~holds.fill_null(value=False)).then(pl.lit(words)) for words, holds in rules.items())
     segments = segments.with_columns(failed=failed)
     accepted = segments.filter(pl.col("failed").is_null())
-    left_out = _left_out(segments.filter(pl.col("failed").is_not_null(), pl.col("span") >= _PASS_M), accepted, names)
+    lost = _lost(segments.filter(pl.col("failed").is_not_null(), pl.col("span") >= _PASS_M), accepted)
     rival = accepted.join(accepted, on="track", suffix="_b").filter(
         pl.col("segment") != pl.col("segment_b"),
         pl.col("start") <= pl.col("end_b"),
@@ -301,7 +308,7 @@ def _segments(gated: pl.DataFrame, gates: Gates, names: list[str]) -> tuple[pl.D
         pl.col("off") > pl.col("off_b"),
     )
     accepted = accepted.join(rival, on="segment", how="anti")
-    return points.join(accepted.select("segment"), on="segment", how="semi"), left_out
+    return points.join(accepted.select("segment"), on="segment", how="semi"), lost
 
 
 _PASS_M = 1.0 * METRES_PER_NM
@@ -309,14 +316,16 @@ _PASS_M = 1.0 * METRES_PER_NM
 _PASSES_NAMED = 8
 
 
-def _left_out(failed: pl.DataFrame, accepted: pl.DataFrame, names: list[str]) -> list[str]:
-    """Passes that no accepted approach covers, each with the rule that it fails."""
+def _lost(failed: pl.DataFrame, accepted: pl.DataFrame) -> pl.DataFrame:
+    """Passes that no accepted approach covers, with the rule that each fails; of several at one time, to parallel runways, the first."""
     covered = failed.join(accepted.select("track", "start", "end"), on="track", suffix="_of").filter(
         pl.col("start") <= pl.col("end_of"), pl.col("start_of") <= pl.col("end")
     )
-    lost = (
-        failed.join(covered, on="segment", how="anti").sort("track", "start").unique(["track", "start"], keep="first", maintain_order=True)
-    )
+    lost = failed.join(covered, on="segment", how="anti").sort("track", "start", "off")
+    return lost.filter((pl.col("start") > pl.col("end").cum_max().shift().over("track")).fill_null(value=True))
+
+
+def _lost_words(lost: pl.DataFrame, names: list[str]) -> list[str]:
     if lost.is_empty():
         return []
     shown = [
@@ -334,6 +343,7 @@ def _named(segments: pl.DataFrame) -> pl.DataFrame:
         start=pl.col("time_ns").min(),
         end=pl.col("time_ns").max(),
         nearest_m=pl.col("before_m").min(),
+        furthest_m=pl.col("before_m").max(),
     )
     approaches = approaches.sort("track", "start").with_columns(again=pl.int_range(1, pl.len() + 1).over("track", "runway_name"))
     name = pl.concat_str("track", pl.lit(" "), "runway_name")
@@ -342,12 +352,18 @@ def _named(segments: pl.DataFrame) -> pl.DataFrame:
     )
 
 
+def _due(approaches: pl.DataFrame, gates: Gates) -> dict[str, int]:
+    """When each would have passed the last gate at its own mean speed: rows without a position until then belong to it. [GPS ns]."""
+    passed = (pl.col("end") - pl.col("start")) * (pl.col("nearest_m") - gates.before_min_m) / (pl.col("furthest_m") - pl.col("nearest_m"))
+    return dict(approaches.select("approach", due=pl.col("end") + passed.round().cast(pl.Int64)).iter_rows())
+
+
 def _with_ends(approaches: pl.DataFrame, beside: pl.DataFrame, gates: Gates) -> pl.DataFrame:
     """Approaches to their ends: who leaves the centreline in the last mile is judged while it comes nearer to the threshold."""
     of = {key: rows.sort("time_ns") for key, rows in beside.group_by("track", "runway")}
     last = approaches.select("track", "runway", "end", "nearest_m").iter_rows()
     ends = [_end(of.get((track, runway), beside.clear()), at_ns, nearest_m, gates) for track, runway, at_ns, nearest_m in last]
-    return approaches.with_columns(pl.Series("end", ends, dtype=pl.Int64)).drop("runway", "nearest_m")
+    return approaches.with_columns(pl.Series("end", ends, dtype=pl.Int64)).drop("runway", "nearest_m", "furthest_m")
 
 
 def _end(beside: pl.DataFrame, last_ns: int, nearest_m: float, gates: Gates) -> int:

@@ -54,6 +54,8 @@ class Material:
         Where the covariance comes from.
     left_out : DataFrame
         ``track`` and ``time_ns`` of recorded rows that cannot be judged and are no epochs: they are expected all the same.
+    n_approaches, n_unjudged_approaches : int
+        Approaches to runways, and passes along a runway's centreline that are none and are not judged.
     frames : Frames, optional
         The epochs of a table that is too large for memory, in pieces on the disk; `epochs` is then without rows.
     with_levels : set of str
@@ -90,6 +92,8 @@ class Material:
     events: list[EventSummary] = field(default_factory=list)
     limits_held: dict[str, str] = field(default_factory=dict)
     left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
+    n_approaches: int = 0
+    n_unjudged_approaches: int = 0
     frames: Frames | None = None
     with_levels: frozenset[str] = frozenset()
     unread: list[str] = field(default_factory=list)

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from navbound.read.pieces import PiecedReading
     from navbound.read.truth import Truth
     from navbound.run.inputs.files import Files
+    from navbound.run.paths import OnPath
     from navbound.run.procedure import Flown, OnProcedure
 
 
@@ -194,7 +195,9 @@ def material(
         waypoints=route.waypoints,
         inputs=inputs + route.inputs,
         rejected=rejected,
-        left_out=pl.concat([_on_path(flights.divide_left_out(lost), _ends(epochs), route.tracks), route.left_out]),
+        n_approaches=route.n_approaches,
+        n_unjudged_approaches=route.n_unjudged,
+        left_out=pl.concat([_on_path(flights.divide_left_out(lost), _ends(epochs), route), route.left_out]),
         cross_track=route.cross_track,
         procedures=route.flights,
         settings=context.settings_with(readings),
@@ -287,7 +290,9 @@ def _in_pieces(file: Path, path: str | Path | None, truth: Truth, context: _Cont
         waypoints=route.waypoints,
         inputs=[reading.source, *([] if other is None else [other.source]), *route.inputs],
         rejected=rejected,
-        left_out=_on_path(recorded.left_out, recorded.ends, route.tracks),
+        n_approaches=route.n_approaches,
+        n_unjudged_approaches=route.n_unjudged,
+        left_out=_on_path(recorded.left_out, recorded.ends, route),
         cross_track=route.cross_track,
         settings=context.settings_with([reading]),
         with_levels=recorded.with_levels,
@@ -345,11 +350,14 @@ def _ends(epochs: pl.DataFrame) -> pl.DataFrame:
     return epochs.group_by("track").agg(start=pl.col("time_ns").min(), end=pl.col("time_ns").max())
 
 
-def _on_path(lost: pl.DataFrame, ends: pl.DataFrame, tracks: Mapping[str, str]) -> pl.DataFrame:
-    """The rows that cannot be judged and belong to what is judged: all, or those between the ends of an approach of their track."""
-    if not tracks or lost.is_empty():
+def _on_path(lost: pl.DataFrame, ends: pl.DataFrame, route: OnPath | OnProcedure) -> pl.DataFrame:
+    """The rows that cannot be judged and belong to what is judged: all, or those of an approach of their track until it was due."""
+    if not route.tracks or lost.is_empty():
         return lost
-    ends = ends.with_columns(pl.col("track").replace_strict(dict(tracks), default=None, return_dtype=pl.String).alias("of"))
+    ends = ends.with_columns(
+        pl.col("track").replace_strict(dict(route.tracks), default=None, return_dtype=pl.String).alias("of"),
+        pl.max_horizontal("end", pl.col("track").replace_strict(route.due, default=None, return_dtype=pl.Int64)),
+    )
     timed = lost.join(ends.rename({"track": "approach"}), left_on="track", right_on="of", how="inner")
     # Without a time nobody knows where a row belongs, and it may belong here.
     timed = timed.filter(pl.col("time_ns").is_between("start", "end"))

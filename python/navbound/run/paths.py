@@ -41,6 +41,9 @@ class OnPath:
     inputs: list[InputFile] = field(default_factory=list)
     cross_track: list[CrossTrack] = field(default_factory=list)
     tracks: dict[str, str] = field(default_factory=dict)
+    due: dict[str, int] = field(default_factory=dict)
+    n_approaches: int = 0
+    n_unjudged: int = 0
     left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
     operation: Operation = "en-route"
     flights: list[ProcedureFlown] = field(default_factory=list)
@@ -129,7 +132,18 @@ def _approach_path(epochs: Table, approaches: Landings, gates: Gates, n_recorded
     heading = f"{n} recorded approaches to {runways if len(approaches.runways) <= 4 else f'{len(approaches.runways)} runways'}"
     words += [r.doubt for r in approaches.runways if r.doubt is not None]
     notes = words + approaches.notes
-    return OnPath(epochs, notes, heading, waypoints, cross_track=cross, tracks=tracks, operation="approach")
+    return OnPath(
+        epochs,
+        notes,
+        heading,
+        waypoints,
+        cross_track=cross,
+        tracks=tracks,
+        due=approaches.due,
+        n_approaches=n,
+        n_unjudged=approaches.n_unjudged,
+        operation="approach",
+    )
 
 
 def way_of(path: str | Path | None, gates: Gates, piece_rows: int) -> Way:

@@ -28,8 +28,8 @@ CLOCK_STANDS = 10
 BOUNDS = ("sigma_e_m", "sigma_n_m", "sigma_u_m", "epu_m", "rc_m", "nac_p", "nic", "hpl_m", "vpl_m", "hpe_m", "vpe_m")
 """What a row states of its accuracy or its bound, beside its covariance."""
 
-ERRORS = ("nse_e_m", "nse_n_m", "nse_u_m", "stated_error_m")
-"""What a row states of its error. Two of one time are one as two positions are."""
+ERRORS = ("nse_e_m", "nse_n_m", "nse_u_m", "stated_error_m", "truth_h_m")
+"""What a row states of its error, or of its true height. Two of one time are one as two positions are."""
 
 _EAST, _NORTH, _UP = VARIANCES
 SIZES = dict(
@@ -38,7 +38,7 @@ SIZES = dict(
 """Entries of a covariance and the variances whose geometric mean is their size: a correlation near zero has no size of its own."""
 
 _OTHER_PLACE = "another position has the same time"
-_OTHER_BOUND = "another accuracy, bound or error has the same time"
+_OTHER_BOUND = "another accuracy, bound, error or true position has the same time"
 
 
 @dataclass(frozen=True)
@@ -62,10 +62,10 @@ class Repeats:
 def separate(epochs: pl.DataFrame) -> Repeats:
     """One row a time out of rows sorted by track and time.
 
-    Two rows of one time contradict each other where their positions lie further apart than `SAME_PLACE_M` (``position_jump``: no vehicle is
-    in two places), or where both state an accuracy, a bound or an error and the numbers differ (``invalid_number``). Nobody knows which of
-    them is right, so the epoch is not believed. Where only the statuses differ, the graver counts; an alert of any of them counts; and of
-    rows with errors and levels one whose error is above its level: no recorded hazard is left out.
+    Two rows of one time contradict each other where their positions lie further apart than `SAME_PLACE_M` (``position_jump``: no vehicle
+    is in two places), or where both state an accuracy, a bound, an error or a true position and these differ (``invalid_number``). Nobody
+    knows which of them is right, so the epoch is not believed. Where only the statuses differ, the graver counts; an alert of any of them
+    counts; and of rows with errors and levels one whose error is above its level: no recorded hazard is left out.
     """
     key = ["track", "time_ns"]
     again = (pl.all_horizontal(pl.col(k) == pl.col(k).shift(1) for k in key)).fill_null(value=False)
@@ -136,15 +136,20 @@ def _other_place(epochs: pl.DataFrame, key: list[str]) -> pl.Expr:
     """Further than `SAME_PLACE_M` from the first position of the time, in the plane or in height; `SAME_ALTITUDE_M` in altitude."""
     if not {"est_lat_rad", "est_lon_rad"} <= set(epochs.columns):
         return pl.lit(value=False)
-    lat, lon = pl.col("est_lat_rad"), pl.col("est_lon_rad")
-    north = EARTH_RADIUS_M * (lat - lat.first().over(key))
-    # A meridian and the same one a turn further are one.
-    east = EARTH_RADIUS_M * lat.cos() * ((lon - lon.first().over(key)) / 2).sin() * 2
     # A NaN is no small distance.
-    here = (north**2 + east**2 <= SAME_PLACE_M**2).fill_null(value=False)
+    here = _same_place("est", key).fill_null(value=False)
     heights = {name: most for name, most in (("est_h_m", SAME_PLACE_M), ("altitude_m", SAME_ALTITUDE_M)) if name in epochs.columns}
     apart = [(pl.col(name) - pl.col(name).drop_nulls().first().over(key)).abs() > most for name, most in heights.items()]
     return pl.any_horizontal(~here, *(each.fill_null(value=False) for each in apart))
+
+
+def _same_place(prefix: str, key: list[str]) -> pl.Expr:
+    """Within `SAME_PLACE_M` of the first position that its time states; null where a row states none."""
+    lat, lon = pl.col(f"{prefix}_lat_rad"), pl.col(f"{prefix}_lon_rad")
+    north = EARTH_RADIUS_M * (lat - lat.drop_nulls().first().over(key))
+    # A meridian and the same one a turn further are one.
+    east = EARTH_RADIUS_M * lat.cos() * ((lon - lon.drop_nulls().first().over(key)) / 2).sin() * 2
+    return north**2 + east**2 <= SAME_PLACE_M**2
 
 
 def _other_bound(epochs: pl.DataFrame, key: list[str]) -> pl.Expr:
@@ -159,6 +164,8 @@ def _other_bound(epochs: pl.DataFrame, key: list[str]) -> pl.Expr:
 
     differs = [(pl.col(name) - first(name)).abs() > SAME_BOUND * of.max().over(key) for name, of in size.items()]
     differs += [(pl.col(name) - first(name)).abs() > SAME_PLACE_M for name in ERRORS if name in epochs.columns]
+    if {"truth_lat_rad", "truth_lon_rad"} <= set(epochs.columns):
+        differs.append(~_same_place("truth", key))
     return pl.any_horizontal(*(each.fill_null(value=False) for each in differs)) if differs else pl.lit(value=False)
 
 

@@ -210,6 +210,7 @@ _SPEAKS = _words(
     "epx epy epd hrms vrms 2drms cep50 cep95 r95 sd sdev ehe eve hdop pdop pl level major minor outage dr mlat tisb datum covariance type "
     "available availability exceeded exceedance herr verr poserr "
     "deviation cdi monitor message msg state carrsoln "
+    "hpe herror residual misfit dev unc uncert smaj rss tke ci95 ci "
     "confidence outlier misleading degraded lost loss solution denied reckoning estimated predicted propagated simulated source "
 )
 """Parts of names that speak of validity, accuracy or integrity. Provenance: ours."""
@@ -224,7 +225,7 @@ def kind_of(plain_name: str) -> Kind | None:
 
 _ACCURACY = _words(
     "acc hacc pacc accuracy uncertainty sigma std stddev sd sdev epe eph ehpe ehe epx epy cep cep50 cep95 r95 drms 2drms rms hrms hfom "
-    "twodrms "
+    "twodrms hpe herror "
     "fom nse tse fte err error errors herr poserr"
 )
 """Parts of names of a horizontal accuracy or error, a length. Provenance: ours."""
@@ -238,6 +239,16 @@ _NO_POSITION = _words(
 
 def _parts(name: str) -> list[str]:
     return re.split(r"[^a-z0-9]+", re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name[:_LONGEST]).lower())
+
+
+def _parts_of_lengths(name: str) -> set[str]:
+    """The parts of a name, and each without the plane or the share that it is of: `err2d`, `hpe95`."""
+    parts = {*_parts(name), name[:_LONGEST].lower()}
+    return parts | {_OF_PLANE_OR_SHARE.sub("", part) for part in parts}
+
+
+_OF_PLANE_OR_SHARE = re.compile(r"(?<=[a-z])(2d|50|67|68|95|99)$")
+"""Endings of an error in the plane, and of the share of errors within a length."""
 
 
 _APART = _words("dist distance offset offs diff difference delta separation gap discrepancy deviation displacement residual misclosure")
@@ -266,13 +277,13 @@ def _speaks_of_distance_from_truth(name: str) -> bool:
 
 def speaks_of_integrity(name: str) -> bool:
     """Whether the name of a column that nothing reads, as the file writes it, is one of a statement of integrity, or of a truth."""
-    parts = [*_parts(name), name.lower()]
+    parts = _parts_of_lengths(name)
     return not _SPEAKS.isdisjoint([*parts, *(part.removesuffix("s") for part in parts)]) or _speaks_of_truth(name)
 
 
 def speaks_of_accuracy(name: str) -> bool:
     """Whether the name is one of a horizontal accuracy or error, so that its numbers are lengths."""
-    parts = {*_parts(name), name.lower()}
+    parts = _parts_of_lengths(name)
     # `acc_x` is an acceleration.
     if "acc" in parts and parts & {"x", "y", "body", "g"}:
         return False
@@ -286,7 +297,7 @@ _LEVEL_IN_WORDS = tuple(map(_words, ("protection level", "integrity level", "int
 
 def speaks_of_level(name: str) -> bool:
     """Whether the name is one of a horizontal protection level, so that its numbers are lengths."""
-    parts = {*_parts(name), name.lower()}
+    parts = _parts_of_lengths(name)
     named = not _LEVEL.isdisjoint(parts) or any(together <= parts for together in _LEVEL_IN_WORDS)
     return named and _NO_POSITION.isdisjoint(parts)
 

@@ -179,7 +179,8 @@ STATED_QUANTITIES: tuple[Quantity, ...] = (
         "fte_m",
         -1e8,
         1e8,
-        m="fte xtk xte xtd xtrack cross_track cross_track_error cross_track_deviation lateral_deviation lateral_error",
+        m="fte xtk xte xtd xtrack cross_track cross_track_error cross_track_deviation lateral_deviation lateral_error "
+        "off_track offtrack off_track_distance off_track_error crosstrack crosstrack_error xtrk",
         nm="xtk_nm xte_nm xtd_nm cross_track_nm cross_track_error_nm lateral_deviation_nm",
     ),
     _q("alert", 0.0, 0.0),

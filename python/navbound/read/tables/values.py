@@ -29,7 +29,7 @@ from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, understand, units
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from navbound.read.checks.statements import Effect, Stated
@@ -41,7 +41,7 @@ _MISSING = r"(?i)^([+-]?nan(\(\w*\))?)?$"
 _AHEAD_NS = 1_000_000_000
 """How much later than its row a position may be said to be: both may be rounded."""
 
-FIELDS, OPTIONAL, DATED, REQUIRED, REPEATED, LEVELS = range(0, 600_000, 100_000)
+FIELDS, OPTIONAL, DATED, REQUIRED, REPEATED, LEVELS, COMPARED = range(0, 700_000, 100_000)
 """Where a reason stands among the others of its file; the number of the column is added to that of an optional one."""
 
 
@@ -146,7 +146,7 @@ class Values:
         if tuple(self._required) == POSITION:
             rows = stated.of_satellites(self._listed_statuses(stated.against_itself(part)))
         else:
-            rows = self._listed_statuses(stated.with_faulty_cells(stated.worse_than_level(part), reasons, without))
+            rows = stated.of_satellites(self._listed_statuses(stated.with_faulty_cells(stated.worse_than_level(part), reasons, without)))
         return stated.with_statements(rows, self._statements(frame))
 
     def _with_unread(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
@@ -154,10 +154,23 @@ class Values:
         for quantity, lengths in (("unread_accuracy_m", self._mapping.accuracies), ("unread_level_m", self._mapping.levels)):
             known = {name: frame[name] for name in lengths if not _no_field(frame.schema[name])}
             numbers_of = {name: raw.cast(pl.Float64, strict=False).abs().fill_nan(None) for name, raw in known.items()}
+            self._count_uncompared(frame, numbers_of)
             values = [(each * lengths[name]).alias(name) for name, each in numbers_of.items()]
             if values:
                 part = part.with_columns(pl.DataFrame(values).max_horizontal().alias(quantity))
         return part
+
+    def _count_uncompared(self, frame: pl.DataFrame, compared: Mapping[str, pl.Series]) -> None:
+        """Count the texts of columns that are compared as lengths; an empty field states nothing."""
+        for name, values in compared.items():
+            if frame.schema[name] != pl.String:
+                continue
+            written = frame[name].str.strip_chars()
+            text = values.is_null() & ~written.str.contains(_MISSING).fill_null(value=True)
+            at = frame.filter(text)
+            if not at.is_empty():
+                place = COMPARED + self._mapping.unused.index(name)
+                self.tally.add(place, f"{name}: not a number; not compared", at.height, at[LINE][0], str(at[name][0]), kind="quiet")
 
     def _without_names_and_units(self, frame: pl.DataFrame) -> pl.DataFrame:
         """Refuse a table in which the names of columns change on the way; the same header again is a row without numbers.

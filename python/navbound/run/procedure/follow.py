@@ -45,6 +45,9 @@ class OnProcedure:
     cross_track: list[CrossTrack]
     flights: list[ProcedureFlown]
     tracks: dict[str, str] = field(default_factory=dict)
+    due: dict[str, int] = field(default_factory=dict)
+    n_approaches: int = 0
+    n_unjudged: int = 0
     operation: Operation = "approach"
 
 

@@ -92,6 +92,8 @@ def verdict_of(
         n_apart=0 if known.doubts.neighbours is None else known.doubts.neighbours.n,
         truth_lost=material.truth_doubts.n > 0 and known.n_truth <= material.truth_doubts.n,
         position_doubted=bool(material.position_doubts),
+        n_approaches=material.n_approaches,
+        n_unjudged_approaches=material.n_unjudged_approaches,
     )
     decided = rule.of_tracks(facts)
     verdict = Verdict(
@@ -108,6 +110,8 @@ def verdict_of(
         n_unjudged=n_epochs - known.n_judged - n_degraded,
         n_missing=known.n_missing,
         n_reason=known.n_reason,
+        n_approaches=facts.n_approaches,
+        n_unjudged_approaches=facts.n_unjudged_approaches,
         n_outside=facts.n_outside,
         n_known_beyond=facts.n_known_beyond,
         n_stated_beyond=known.doubts.n_stated_beyond,

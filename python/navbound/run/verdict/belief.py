@@ -39,6 +39,9 @@ LEVELS: tuple[tuple[Literal["hpl_m", "vpl_m"], str], ...] = (("hpl_m", "nse_h_m"
 COMPONENTS = {"nse_h_m": ("nse_e_m", "nse_n_m"), "nse_3d_m": ("nse_e_m", "nse_n_m", "nse_u_m")}
 """Signed components of errors that are a length. A length is never negative, so that its correlation about zero says nothing."""
 
+VERTICAL = frozenset({"nse_u_m", "tse_v_m", "nse_3d_m"})
+"""Errors in which the vertical is."""
+
 MOST_RATIO = 1e9
 """Largest error over level that is stated: a level of zero has no finite one."""
 
@@ -133,6 +136,7 @@ def of_epochs(epochs: Table, judging: str, risks: tuple[float, float], stated: S
         short=any(check.coverage < 1.0 - check.risk for check in checks),
         excluded=any(check.coverage_high < 1.0 - check.risk for check in checks),
         p_values_beside=p_beside,
+        excluded_vertical=any(is_excluded_vertical(each.check) for each in beside),
         n_above_vertical_level=sum(check.n_above for check in levels if check.level == "vpl_m"),
         truth_share=n_truth / max(usable.height, 1),
         copied_share=_copied_share(usable),
@@ -149,6 +153,11 @@ def of_epochs(epochs: Table, judging: str, risks: tuple[float, float], stated: S
         beside=_marked(beside, len(p_beside)),
         levels=levels,
     )
+
+
+def is_excluded_vertical(check: BoundCheck) -> bool:
+    """Whether a bound in which the vertical is holds less than it claims by its whole interval."""
+    return method(check.method).error_column in VERTICAL and check.coverage_high < 1.0 - check.risk
 
 
 def _tested(epochs: _Usable, ids: Sequence[str], risks: tuple[float, float], independent: Callable[[str], float]) -> list[_Tested]:

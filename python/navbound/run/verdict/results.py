@@ -10,8 +10,8 @@ from navbound import _core
 from navbound.read.checks.statements import speaks_of_accuracy, speaks_of_level
 from navbound.read.tables.columns import declare
 from navbound.run.verdict.numbers import length, level, share
-from navbound.run.verdict.rule import FEW_EPOCHS
-from navbound.run.verdict.words import COPIED, contradicted_words, covered_words, refuted_words, truth_words
+from navbound.run.verdict.rule import FEW_EPOCHS, has_approaches
+from navbound.run.verdict.words import COPIED, contradicted_words, covered_words, refuted_words, short_words, truth_words
 from navbound.status import REASONS
 from navbound.time import utc_text
 
@@ -130,13 +130,25 @@ def _thin(verdict: Verdict) -> str:
 
 def _shares(verdict: Verdict) -> str:
     """What became of all epochs."""
+    unjudged = _unjudged_approaches(verdict)
     if verdict.n_epochs == 0:
-        return "there is no epoch"
+        return f"there is no epoch{unjudged}"
     if verdict.n_judged == verdict.n_epochs:
-        return f"all {verdict.n_epochs} epochs are ok and judged"
+        return f"all {verdict.n_epochs} epochs are ok and judged{unjudged}"
     missing = f" ({verdict.n_missing} epochs missing in gaps or without a usable time and position)" if verdict.n_missing else ""
     kinds = {"ok and judged": verdict.n_judged, "degraded": verdict.n_degraded, f"without a bound{missing}": verdict.n_unjudged}
-    return f"of {verdict.n_epochs} epochs {', '.join(f'{share(n / verdict.n_epochs)} are {kind}' for kind, n in kinds.items())}"
+    return f"of {verdict.n_epochs} epochs {', '.join(f'{share(n / verdict.n_epochs)} are {kind}' for kind, n in kinds.items())}{unjudged}"
+
+
+def _unjudged_approaches(verdict: Verdict) -> str:
+    """That passes along a centreline are no part of all these epochs."""
+    n, n_all = verdict.n_unjudged_approaches, verdict.n_approaches + verdict.n_unjudged_approaches
+    which = (
+        "is not judged, since it strays or ends before it is one"
+        if n == 1
+        else "are not judged, since they stray or end before they are one"
+    )
+    return f"; {n} of {n_all} approaches {which}" if n else ""
 
 
 def _not_shown(verdict: Verdict) -> list[str]:
@@ -144,10 +156,10 @@ def _not_shown(verdict: Verdict) -> list[str]:
     why = []
     if verdict.n_judged < verdict.least_share * verdict.n_epochs:
         why.append(f"At least {level(1.0 - verdict.least_share)} of the epochs must be ok and judged.")
+    if not has_approaches(verdict.n_approaches, verdict.n_unjudged_approaches):
+        why.append(f"At least {level(1.0 - verdict.least_share)} of the approaches must be judged.")
     if verdict.belief is not None and verdict.belief.state == "short":
-        why.append(
-            "The error is within the bounds less often than they claim, on too few independent epochs to decide whether they are false."
-        )
+        why += short_words(verdict.belief)
     if verdict.belief is not None and verdict.belief.state == "copied":
         why.append(COPIED)
     if verdict.belief is not None and verdict.belief.state == "contradicted":

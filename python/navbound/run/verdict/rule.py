@@ -16,6 +16,10 @@ REFUTED_AT = 1e-3
 DOUBTED_AT = 0.05
 """The same at which they are not supported either. Provenance: ours."""
 
+DOUBTED_BESIDE_AT = 0.01
+"""The same of the tests beside the lateral bounds: these carry no lateral verdict, so that one error by chance is no doubt of it, and
+withdraws the vertical claim alone. Provenance: ours."""
+
 MEANS_INSIDE: dict[VerdictId, bool | None] = {
     "inside": True,
     "outside": False,
@@ -58,6 +62,8 @@ class TrackFacts:
         A truth was there, and at half of its epochs or more it cannot be one.
     position_doubted : bool
         Positions may not be what they are read as: their unit, or their motion against the stated speed.
+    n_approaches, n_unjudged_approaches : int
+        Approaches that were judged, and passes along a centreline that strayed before they were one.
     """
 
     n_epochs: int
@@ -73,6 +79,8 @@ class TrackFacts:
     truth_lost: bool = False
     position_doubted: bool = False
     n_apart: int = 0
+    n_approaches: int = 0
+    n_unjudged_approaches: int = 0
 
 
 def of_tracks(facts: TrackFacts) -> VerdictId:
@@ -86,9 +94,13 @@ def of_tracks(facts: TrackFacts) -> VerdictId:
     doubts = (
         facts.n_implausible + facts.n_stated_against + facts.n_without_level + facts.n_apart + facts.truth_lost + facts.position_doubted
     )
-    if doubts or facts.belief in UNSUPPORTED or not facts.n_judged >= LEAST_SHARE * facts.n_epochs:
-        return "not_shown"
-    return "inside"
+    judged = facts.n_judged >= LEAST_SHARE * facts.n_epochs and has_approaches(facts.n_approaches, facts.n_unjudged_approaches)
+    return "not_shown" if doubts or facts.belief in UNSUPPORTED or not judged else "inside"
+
+
+def has_approaches(n_judged: int, n_unjudged: int) -> bool:
+    """Whether enough approaches are judged: the least share of epochs is that of approaches too, since who strays early has few epochs."""
+    return n_judged >= LEAST_SHARE * (n_judged + n_unjudged)
 
 
 UNSUPPORTED: frozenset[BeliefState] = frozenset({"copied", "short", "contradicted"})
@@ -159,6 +171,8 @@ class BeliefFacts:
         The 95 % interval of a coverage of these lies below its claim.
     p_values_beside : list of float
         Of every test of the other bounds that the run states: vertical, spatial, along the axes of the path.
+    excluded_vertical : bool
+        The 95 % interval of the coverage of a vertical bound lies below its claim.
     n_above_vertical_level : int
         Epochs whose vertical error is above the vertical protection level.
     truth_share : float
@@ -174,6 +188,7 @@ class BeliefFacts:
     short: bool
     excluded: bool
     p_values_beside: list[float] = field(default_factory=list)
+    excluded_vertical: bool = False
     n_above_vertical_level: int = 0
     truth_share: float = 1.0
     copied_share: float = 0.0
@@ -212,11 +227,12 @@ def of_belief(facts: BeliefFacts) -> BeliefState:
     """Whether truth supports the claimed bounds.
 
     Refuted where the data are too improbable for true bounds of those that the lateral verdict rests on; contradicted where they are too
-    improbable for another bound that the run states (docs/decisions/0029); short where a coverage is below its claim and its interval
-    excludes the claim, or so few independent epochs stand behind it that they decide nothing, or where the data are improbable though not
-    enough to refute. Truth that is the estimate itself says nothing: copied. Truth that is known at less than the least share of judged
-    epochs supports the bounds of these epochs alone: partial. Fewer independent epochs than `FEW_EPOCHS` contradict nothing and support
-    nothing: few. Errors below `TOO_SMALL` of what is stated may be those of a truth that comes from the estimate: small.
+    improbable for another bound that the run states (docs/decisions/0029); short where a coverage, of the lateral bounds or of a vertical
+    one, is below its claim and its interval excludes the claim, or so few independent epochs stand behind it that they decide nothing, or
+    where the data are improbable though not enough to refute. Truth that is the estimate itself says nothing: copied. Truth that is known
+    at less than the least share of judged epochs supports the bounds of these epochs alone: partial. Fewer independent epochs than
+    `FEW_EPOCHS` contradict nothing and support nothing: few. Errors below `TOO_SMALL` of what is stated may be those of a truth that
+    comes from the estimate: small.
     """
     if is_refuted(facts.p_values, len(facts.p_values)):
         return "refuted"
@@ -225,6 +241,7 @@ def of_belief(facts: BeliefFacts) -> BeliefState:
     if facts.copied_share >= COPIED_SHARE:
         return "copied"
     doubted = facts.short and joint_probability(facts.p_values) <= DOUBTED_AT
+    doubted |= facts.excluded_vertical and joint_probability(facts.p_values_beside) <= DOUBTED_BESIDE_AT
     if facts.excluded or doubted or (facts.short and facts.n_effective < FEW_EPOCHS):
         return "short"
     return _of_believed(facts)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from navbound.methods import method
 from navbound.records.verdict import LEAST_SHARE
+from navbound.run.verdict.belief import is_excluded_vertical
 from navbound.run.verdict.numbers import level, share
 from navbound.run.verdict.rule import FEW_EPOCHS, SQUARE_OF_TRUE, TOO_SMALL
 
@@ -56,6 +57,22 @@ def _false(bounds: list[BoundCheck], levels: list[LevelCheck]) -> list[str]:
             most = f"(at most {each.largest_ratio:.3g} times the level)"
             named.append(f"the {axis} error is above {name} at {each.n_above} of {each.n} epochs {most}")
     return named
+
+
+def short_words(belief: Belief) -> list[str]:
+    """Which bounds hold less than they claim, though not beyond doubt."""
+    false = [
+        f"the {_bound(check)} contains {_figures(check)} of {check.n} errors" for check in belief.beside if is_excluded_vertical(check)
+    ]
+    lateral = any(check.coverage < 1.0 - check.risk for check in belief.bounds)
+    words = []
+    if lateral or not false:
+        words.append(
+            "The error is within the bounds less often than they claim, on too few independent epochs to decide whether they are false."
+        )
+    if false:
+        words.append(f"The vertical bounds claim more than their intervals allow: {'; '.join(false)}.")
+    return words
 
 
 def truth_words(verdict: Verdict, *, beside_numbers: bool = False) -> list[str]:
@@ -135,9 +152,15 @@ def _contained(bounds: list[BoundCheck]) -> list[str]:
 
 def _below(belief: Belief) -> list[str]:
     """Bounds beside the lateral ones whose coverage lies below the claim with its whole interval, and that are not refuted by name."""
-    low = [check for check in belief.beside if check.coverage_high < 1.0 - check.risk and not check.refuted]
+    named_first = belief.state == "short"
+    low = [
+        check
+        for check in belief.beside
+        if check.coverage_high < 1.0 - check.risk and not check.refuted and not (named_first and is_excluded_vertical(check))
+    ]
     each = "; ".join(f"the {_bound(check)} contains {_figures(check)}" for check in low)
-    return [f"Below its claim, though not beyond doubt: {each}."] if low else []
+    alone = " This verdict is lateral alone: the vertical claim is withdrawn." if any(map(is_excluded_vertical, low)) else ""
+    return [f"Below its claim, though not beyond doubt: {each}.{alone}"] if low else []
 
 
 def _levels(belief: Belief) -> list[str]:
