@@ -106,9 +106,9 @@ const ROUNDED: f64 = 0.1;
 /// A variance below it counts as zero: a position in radians has a last bit of 1.4 nm on the ground, 2^-52 of 6371 km \[m²\]. Derived.
 pub const LEAST_VARIANCE_M2: f64 = (f64::EPSILON * 6_371_000.0) * (f64::EPSILON * 6_371_000.0);
 
-/// Whether a variance is none of a measured position. One below zero is no variance, which is another fault \[m²\].
+/// Whether a variance is none of a measured position. One further below zero is no variance, which is another fault \[m²\].
 pub fn counts_as_zero(variance_m2: f64) -> bool {
-    (0.0..LEAST_VARIANCE_M2).contains(&variance_m2)
+    variance_m2.abs() < LEAST_VARIANCE_M2
 }
 
 impl Covariance<Enu> {
