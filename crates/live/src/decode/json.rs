@@ -232,10 +232,9 @@ impl Line<'_> {
             return variance.map(|variance| [variance, 0.0, variance, 0.0, 0.0, variance]);
         }
         let [ee, en, nn, eu, nu, uu] = terms.map(|term| term.unwrap_or(f64::NAN));
-        // What is below zero or no number is no variance, whatever stands beside it; of a NaN of the deviation `max` says nothing.
+        // What is below zero or no number is no variance, whatever stands beside it, and is judged as it is.
         let least = |term: f64| match variance {
-            Some(_) if !(term >= 0.0) => f64::NAN,
-            Some(least) if !(least <= term) => least + 0.0 * term,
+            Some(least) if term >= 0.0 && !(least <= term) => least + 0.0 * term,
             _ => term,
         };
         Some([least(ee), en, least(nn), eu, nu, least(uu)])
