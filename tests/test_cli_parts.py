@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import io
+import json
+import os
 import subprocess
 import sys
+import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -54,6 +58,56 @@ def test_off_a_terminal_there_is_no_bar(monkeypatch: pytest.MonkeyPatch) -> None
         tell(0, 3)
         tell(3, 3)
     assert kept.getvalue() == ""
+
+
+def test_off_a_terminal_lines_say_how_far_the_work_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    kept = io.StringIO()
+    monkeypatch.setattr(parts, "err_console", Console(file=kept))
+    monkeypatch.setattr(parts, "SAY_EVERY_S", 0.01)
+    with parts.Bar("flights", "part 1 of 2 begins") as tell:
+        assert kept.getvalue().splitlines()[0] == "part 1 of 2 begins"
+        until(lambda: "flights: at work after 0 s\n" in kept.getvalue())
+        tell(2, 3)
+        until(lambda: "flights: 2 of 3 after 0 s\n" in kept.getvalue())
+    ended = kept.getvalue()
+    time.sleep(0.05)
+    assert kept.getvalue() == ended
+
+
+def test_who_reads_a_file_is_told_nothing_on_standard_error(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    kept = io.StringIO()
+    monkeypatch.setattr(parts, "err_console", Console(file=kept))
+    monkeypatch.setattr(parts, "SAY_EVERY_S", 0.01)
+    monkeypatch.setenv(parts.PROGRESS, str(tmp_path / "far.json"))
+    with parts.Bar("flights", "part 1 of 2 begins") as tell:
+        tell(1, 3)
+        time.sleep(0.05)
+    assert kept.getvalue() == ""
+    assert json.loads((tmp_path / "far.json").read_text(encoding="utf-8")) == {"what": "flights", "done": 1, "total": 3}
+
+
+def test_work_goes_on_where_nobody_reads_standard_error() -> None:
+    program = """
+import time
+from navbound.cli import parts
+parts.SAY_EVERY_S = 0.01
+with parts.Bar("flights", "part 1 of 2 begins") as tell:
+    tell(1, 3)
+    time.sleep(0.1)
+print("done")
+"""
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run([sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=write, check=False)
+    os.close(write)
+    assert (done.returncode, done.stdout) == (0, b"done\n")
+
+
+def until(true: Callable[[], bool]) -> None:
+    began_s = time.monotonic()
+    while not true():
+        assert time.monotonic() - began_s < 10.0
+        time.sleep(0.005)
 
 
 def test_what_was_not_requested_is_left_to_the_job() -> None:

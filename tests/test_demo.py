@@ -26,12 +26,19 @@ BEGINS = {"interference begins": 6420, "interference ends": 6540, "spoofing begi
 
 
 @pytest.fixture(scope="module")
-def demo(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+def demo(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str, str]:
     out = tmp_path_factory.mktemp("demo")
     command = [sys.executable, "-m", "navbound", "demo", "--out", str(out)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
     assert done.returncode == 0, done.stderr
-    return out, done.stdout
+    return out, done.stdout, done.stderr
+
+
+def test_off_a_terminal_every_part_says_that_it_begins_and_how_far_it_is(demo: tuple[Path, str, str]) -> None:
+    lines = demo[2].splitlines()
+    begun = [line for line in lines if not re.fullmatch(r"flights: (at work|\d+ of (1|12)) after \d+ s", line)]
+    assert begun == ["navbound demo: part 1 of 2 begins", "navbound demo: part 2 of 2 begins"]
+    assert not set(lines) & set(demo[1].splitlines())
 
 
 def seconds(clock: str) -> int:
@@ -39,7 +46,7 @@ def seconds(clock: str) -> int:
     return 3600 * hours + 60 * minutes + rest
 
 
-def test_what_happened_is_printed_in_the_order_of_time(demo: tuple[Path, str]) -> None:
+def test_what_happened_is_printed_in_the_order_of_time(demo: tuple[Path, str, str]) -> None:
     lines = re.findall(r"^  (\d\d:\d\d:\d\d) UTC  (.*)$", demo[1], re.MULTILINE)
     at = {words: seconds(clock) for clock, words in lines}
     assert [seconds(clock) for clock, _ in lines] == sorted(at[words] for _, words in lines)
@@ -56,7 +63,7 @@ def test_what_happened_is_printed_in_the_order_of_time(demo: tuple[Path, str]) -
     assert f"Of the spoofing: the first alert came {ahead} s before the true error left RNP." in demo[1]
 
 
-def test_what_the_second_fault_does_is_not_put_down_to_the_first(demo: tuple[Path, str]) -> None:
+def test_what_the_second_fault_does_is_not_put_down_to_the_first(demo: tuple[Path, str, str]) -> None:
     interference, spoofing = load(demo[0] / "interference").summary.faults
     assert interference.end_ns is not None
     assert max(m.time_ns for m in interference.moments) < spoofing.start_ns
@@ -64,7 +71,7 @@ def test_what_the_second_fault_does_is_not_put_down_to_the_first(demo: tuple[Pat
     assert spoofing.outcome == "before"
 
 
-def test_the_quiet_flights_hold_what_the_first_screen_says(demo: tuple[Path, str]) -> None:
+def test_the_quiet_flights_hold_what_the_first_screen_says(demo: tuple[Path, str, str]) -> None:
     run = load(demo[0] / "quiet")
     assert run.summary.verdict.id == "inside"
     belief = run.summary.verdict.belief
@@ -75,7 +82,7 @@ def test_the_quiet_flights_hold_what_the_first_screen_says(demo: tuple[Path, str
         assert f"{bound.method}, stated for {100 * (1 - bound.risk):g} %: contains {100 * bound.coverage:.1f} %" in demo[1]
 
 
-def test_the_last_lines_say_what_to_do_next(demo: tuple[Path, str]) -> None:
+def test_the_last_lines_say_what_to_do_next(demo: tuple[Path, str, str]) -> None:
     following = demo[1].split("What to do next\n")[1]
     commands = [line.strip() for line in following.splitlines() if line.startswith("  ") and not line.startswith("   ")]
     assert len(commands) == 3
@@ -84,7 +91,7 @@ def test_the_last_lines_say_what_to_do_next(demo: tuple[Path, str]) -> None:
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed: the report was NOT opened in a browser")
-def test_the_report_opens_on_the_event_and_a_key_shows_the_whole(demo: tuple[Path, str]) -> None:
+def test_the_report_opens_on_the_event_and_a_key_shows_the_whole(demo: tuple[Path, str, str]) -> None:
     from playwright.sync_api import sync_playwright  # noqa: PLC0415 - its driver starts only where chromium exists
 
     with sync_playwright() as playwright:

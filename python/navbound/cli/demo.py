@@ -33,10 +33,11 @@ def demo_command(
         _live(out)
         return
     _say("1 of 2: a flight whose satellites are jammed and then spoofed on the approach")
-    disturbed = navbound.fly(DISTURBED, out=out / "interference", command=command_line())
+    with Bar("flights", begins(1)) as progress:
+        disturbed = navbound.fly(DISTURBED, out=out / "interference", command=command_line(), progress=progress)
     _print_moments(disturbed)
     _say(f"2 of 2: {QUIET_FLIGHTS} flights on which nothing happens")
-    with Bar("flights") as progress:
+    with Bar("flights", begins(2)) as progress:
         quiet = navbound.fly(QUIET, flights=QUIET_FLIGHTS, out=out / "quiet", command=command_line(), progress=progress)
     _print_coverage(quiet)
     _say("What to do next")
@@ -50,7 +51,8 @@ def _live(out: Path) -> None:
     from navbound.cli.live.session import replay  # noqa: PLC0415 - the other demonstration needs none of it
 
     _say("1 of 2: a flight of two hours whose satellites are spoofed on the approach")
-    flown = navbound.fly(SPOOFED, out=out / "spoofed-approach", command=command_line())
+    with Bar("flights", begins(1)) as progress:
+        flown = navbound.fly(SPOOFED, out=out / "spoofed-approach", command=command_line(), progress=progress)
     _print_moments(flown)
     _say(f"2 of 2: the same flight on the flight display, {REPLAY_SPEED:g} times as fast: spoofing begins after 110 s; Ctrl-C ends it")
     replay(flown.path or out / "spoofed-approach", out=_free(out / "session"), speed=REPLAY_SPEED, level="NPA", open_page=True)
@@ -59,6 +61,11 @@ def _live(out: Path) -> None:
 def _free(folder: Path) -> Path:
     """The folder, or one beside it: a session is never written over another."""
     return next(each for n in range(1, 10_000) if not (each := folder if n == 1 else folder.with_name(f"{folder.name}-{n}")).exists())
+
+
+def begins(part: int) -> str:
+    """The line on standard error when one of the two parts begins."""
+    return f"navbound demo: part {part} of 2 begins"
 
 
 def _say(heading: str) -> None:

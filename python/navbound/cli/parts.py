@@ -5,12 +5,14 @@ Nothing here needs numbers or tables: a command loads what it needs when it runs
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 import os
 import shlex
 import signal
 import sys
+import threading
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -33,6 +35,8 @@ if TYPE_CHECKING:
 PROGRESS = "NAVBOUND_PROGRESS"
 EVERY_S = 0.2
 """Shortest time between two words on how far the work is. [s]"""
+SAY_EVERY_S = 10.0
+"""Time between two lines on how far the work is, where there is no terminal. [s]"""
 LEAST_WORKERS = 2
 """Worker processes that any machine may be requested for."""
 PAPER_WIDTH = 140
@@ -190,25 +194,52 @@ def stop_requested() -> Callable[[], bool]:
 
 
 class Bar:
-    """A bar with the time that is left, on a terminal and for work of more than one part; nothing elsewhere.
+    """How far the work is: a bar with the time that is left on a terminal, for work of more than one part; lines elsewhere.
 
+    A line stands on standard error after every ten seconds, so that work of less than that says nothing.
     Who waits for the command in place of a person names a file in ``NAVBOUND_PROGRESS``: how far the work is stands there as JSON.
+
+    Parameters
+    ----------
+    what : str
+        The parts that are counted.
+    begins : str
+        What begins; a line of its own at once, where there is no terminal.
     """
 
-    def __init__(self, what: str) -> None:
-        self._what = what
+    def __init__(self, what: str, begins: str = "") -> None:
+        self._what, self._begins = what, begins
         self._shown: tuple[Progress, TaskID] | None = None
         self._file = os.environ.get(PROGRESS)
         self._written_s = -math.inf
+        self._last: tuple[int, int] | None = None
+        self._ended = threading.Event()
+        self._sayer: threading.Thread | None = None
 
     def __enter__(self) -> Callable[[int, int], None]:
+        if self._file is None and not err_console.is_terminal:
+            if self._begins:
+                _say(self._begins)
+            # Work of a single part tells nothing before its end.
+            self._sayer = threading.Thread(target=self._say_often, daemon=True)
+            self._sayer.start()
         return self._tell
 
     def __exit__(self, *_: object) -> None:
+        self._ended.set()
+        if self._sayer is not None:
+            self._sayer.join()
         if self._shown is not None:
             self._shown[0].stop()
 
+    def _say_often(self) -> None:
+        began_s = time.monotonic()
+        while not self._ended.wait(SAY_EVERY_S):
+            far = "at work" if self._last is None else f"{self._last[0]} of {self._last[1]}"
+            _say(f"{self._what}: {far} after {time.monotonic() - began_s:.0f} s")
+
     def _tell(self, done: int, total: int) -> None:
+        self._last = done, total
         self._write(done, total)
         if self._shown is None:
             if total < 2 or not err_console.is_terminal:
@@ -238,3 +269,10 @@ class Bar:
         bar = Progress(*columns, console=err_console, speed_estimate_period=600.0)
         bar.start()
         return bar, bar.add_task(self._what, total=total)
+
+
+def _say(line: str) -> None:
+    """A plain line on standard error; where nobody reads it any more, the work goes on."""
+    # A console of rich ends the command where nobody reads.
+    with contextlib.suppress(OSError, ValueError):
+        print(line, file=err_console.file, flush=True)
