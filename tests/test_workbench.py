@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import hashlib
 import json
 import os
 import re
@@ -29,10 +30,12 @@ from navbound.serve.service import Options
 from navbound.storage import folders
 from navbound.workbench import Server, Settings, jobs
 from navbound.workbench import files as kept
+from navbound.workbench import runs as kept_runs
 from navbound.workbench import server as workbench_server
 from navbound.workbench.files import tidy
 from navbound.workbench.forms import arguments
 from navbound.workbench.recognise import recognise
+from navbound.workbench.runs import Runs
 
 COMMANDS: dict[str, Callable[..., None]] = {
     "analyze": analyze.analyze_command,
@@ -134,8 +137,9 @@ def test_a_file_outside_the_folder_cannot_be_named(page: Browser, folder: Path, 
     outside.write_text(TRACK, encoding="utf-8")
     (folder / "link.csv").symlink_to(outside)
     (folder / "way").symlink_to(tmp_path)
-    names = {row["name"] for row in json.loads(page.ask("GET", "/files").body)["files"]}
-    assert names == {"track.csv"}
+    rows = {row["name"]: row for row in json.loads(page.ask("GET", "/files").body)["files"]}
+    assert {name: row["refused"] for name, row in rows.items()} == {"track.csv": False, "link.csv": True, "way": True}
+    assert rows["link.csv"]["words"] == rows["way"]["words"] == "a link, which is not followed"
     for name in (str(outside), "../secret.csv", "link.csv", "way/secret.csv", "track.csv/../../secret.csv", "/etc/passwd"):
         refused = requested(page, "/line", command="analyze", values={"files": [name]})
         assert refused["field"] == "files", name
@@ -300,7 +304,112 @@ def test_a_file_is_recognised_or_refused_with_a_sentence(name: str, content: byt
 
 def test_a_pipe_is_neither_listed_nor_read(page: Browser, folder: Path) -> None:
     os.mkfifo(folder / "pipe.csv")
-    assert {row["name"] for row in json.loads(page.ask("GET", "/files").body)["files"]} == {"track.csv"}
+    rows = json.loads(page.ask("GET", "/files").body)["files"]
+    assert {row["name"]: row["words"] for row in rows if row["refused"]} == {"pipe.csv": "is not a file"}
+    assert requested(page, "/line", command="analyze", values={"files": ["pipe.csv"]})["field"] == "files"
+
+
+def test_what_cannot_be_used_is_listed_with_its_reason(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (folder / "a\u202eb.csv").write_text(TRACK, encoding="utf-8")
+    (folder / os.fsdecode(b"\xff.csv")).write_text(TRACK, encoding="utf-8")
+    (folder / "one" / "two" / "three").mkdir(parents=True)
+    (folder / "closed").mkdir()
+    (folder / "out" / "closed").mkdir(parents=True)
+    (folder / "out" / "a\nb").mkdir()
+    scandir = os.scandir
+
+    def refusing(path: Any) -> Any:
+        if Path(path).name == "closed":
+            raise PermissionError(13, "Permission denied")
+        return scandir(path)
+
+    monkeypatch.setattr(os, "scandir", refusing)
+    files, runs = kept.Files(folder), Runs(folder)
+    files.look()
+    runs.look(set())
+    assert {row["name"]: row["words"] for row in files.rows() if row["refused"]} == {
+        "a\\u202eb.csv": "its name has characters that cannot be shown: rename it",
+        "\\udcff.csv": "its name has characters that cannot be shown: rename it",
+        "one/two/three": "a folder 3 deep: its files are not listed",
+        "closed": "a folder that cannot be read: Permission denied",
+    }
+    assert set(files.known) == {"track.csv"}
+    assert {run.name: run.trouble for run in runs.known.values()} == {
+        "closed": "cannot be read: Permission denied",
+        "out/closed": "cannot be read: Permission denied",
+        "out/a\\nb": "its name has characters that cannot be shown: rename it",
+    }
+    monkeypatch.setattr(kept, "MOST_UNUSABLE", 1)
+    files.look()
+    assert (len(files.rows()), files.n_left_out) == (2, 3)
+
+
+def rewritten(place: Path, name: str, content: bytes) -> None:
+    """A file of a run and its digest in the manifest, as somebody who means to deceive writes them."""
+    (place / name).write_bytes(content)
+    manifest = json.loads((place / "manifest.json").read_bytes())
+    manifest["files"][name] = hashlib.sha256(content).hexdigest()
+    (place / "manifest.json").write_text(json.dumps(manifest))
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [
+        ("summary.json", b"{", "summary.json: is damaged"),
+        ("summary.json", b"[]", "summary.json: is damaged: no object of JSON"),
+        ("summary.json", b"[" * 100_000, "summary.json: is damaged"),
+        ("run.json", b"\xff", "run.json: is damaged"),
+        ("run.json", b" " * 2000, "run.json: has 2000 bytes"),
+    ],
+)
+def test_a_damaged_record_is_never_a_whole_run(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, name: str, content: bytes, words: str
+) -> None:
+    monkeypatch.setattr(kept_runs, "_MOST_RECORD", 1999)
+    whole(folder / "out" / "run", epochs=True)
+    content = content if len(content) < 2000 or name == "run.json" else content[:1999]
+    rewritten(folder / "out" / "run", name, content)
+    runs = Runs(folder)
+    runs.look(set())
+    (run,) = runs.known.values()
+    assert run.trouble.startswith(words)
+    assert (run.verdict, run.page, run.comparable, runs.report(run.id)) == ("", "", False, None)
+
+
+@pytest.mark.parametrize(
+    ("files", "words"),
+    [
+        ({}, "its manifest lacks"),
+        ({"run.json": None, "summary.json": None}, "its manifest lacks report.html"),
+        ({"run.json": None, "summary.json": None, "report.html": None, "a\0b": ""}, "names what no file can be called"),
+        ({"run.json": None, "summary.json": None, "report.html": None, "\ud800": ""}, "names what no file can be called"),
+        ({"run.json": None, "summary.json": None, "report.html": None, "..": ""}, "is not a file"),
+        ([], "is damaged"),
+    ],
+)
+def test_a_hostile_manifest_is_never_a_whole_run(folder: Path, files: Any, words: str) -> None:
+    place = folder / "out" / "run"
+    whole(place)
+    own = json.loads((place / "manifest.json").read_bytes())["files"]
+    stated = {name: own[name] if digest is None else digest for name, digest in files.items()} if isinstance(files, dict) else files
+    (place / "manifest.json").write_text(json.dumps({"files": stated}))
+    runs = Runs(folder)
+    runs.look(set())
+    (run,) = runs.known.values()
+    assert words in run.trouble
+    assert runs.report(run.id) is None
+
+
+def test_a_manifest_alone_is_no_run_and_runs_beyond_the_limit_are_counted(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("a", "b", "c"):
+        (folder / "out" / name).mkdir(parents=True)
+        (folder / "out" / name / "manifest.json").write_text('{"files": {}}')
+    runs = Runs(folder)
+    runs.look(set())
+    assert {run.trouble for run in runs.known.values()} == {"no record says what it is"}
+    monkeypatch.setattr(kept_runs, "MOST_RUNS", 1)
+    runs.look(set())
+    assert {run.name: run.trouble for run in runs.known.values()}["."] == "1 of its runs are listed, 2 more are not"
 
 
 def whole(place: Path, report: str = "<p>report</p>", *, epochs: bool = False) -> None:
@@ -348,7 +457,8 @@ def test_earlier_runs_are_listed_and_broken_ones_named_as_such(page: Browser, fo
     (folder / "out" / "linked" / "report.html").symlink_to(secret)
     (folder / "out" / "way").symlink_to(tmp_path)
     runs = listed(page)
-    assert set(runs) == {"out/good", "out/changed", "out/cut", "out/began", "out/linked"}
+    assert set(runs) == {"out/good", "out/changed", "out/cut", "out/began", "out/linked", "out/way"}
+    assert runs["out/way"]["trouble"] == "a link, which is not followed"
     assert (runs["out/good"]["title"], runs["out/good"]["verdict"], runs["out/good"]["trouble"]) == ("A <b>run</b>", "inside", "")
     assert "digest differs" in runs["out/changed"]["trouble"]
     assert runs["out/cut"]["trouble"] == runs["out/began"]["trouble"] == "the job that wrote here did not finish"

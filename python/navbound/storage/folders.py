@@ -172,6 +172,8 @@ def require_whole(folder: Path, needed: Collection[str], what: str) -> None:
             actual = _digest(folder / name)
         except OSError as e:
             raise FormatError(folder / name, f"cannot be read: {e.strerror or e}") from e
+        except ValueError as e:
+            raise FormatError(folder / MANIFEST, f"names what no file can be called: {e}") from e
         if actual != files[name]:
             raise FormatError(folder / name, f"is not the file that the job wrote: its digest differs from the one in {MANIFEST}")
 

@@ -22,6 +22,7 @@ OUT, PARTS = "out", "parts"
 """Folders of runs, and of finished parts of those that were stopped."""
 DEPTH = 3
 MOST_FILES = 1000
+MOST_UNUSABLE = 200
 MOST_NAME_BYTES = 150
 MOST_FILE_BYTES = 8 << 30
 LEFT_BYTES = 1 << 30
@@ -40,11 +41,14 @@ class File:
         Its place within the folder, with `/`.
     n_bytes, changed_ns : int
         Size and time of the last change.
+    unusable : str
+        Why it cannot be named by a page; empty where it can. Its name is as it is shown then.
     """
 
     name: str
     n_bytes: int
     changed_ns: int
+    unusable: str = ""
 
 
 def tidy(name: str) -> str:
@@ -56,6 +60,11 @@ def tidy(name: str) -> str:
         # The ending says what it is.
         kept = kept[1:]
     return kept
+
+
+def shown(name: str) -> str:
+    """A name in which every character can be seen: others by their number."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in name)
 
 
 class Files:
@@ -71,26 +80,31 @@ class Files:
         self.folder = folder
         self.n_left_out = 0
         self.known: dict[str, File] = {}
+        self.refused: list[File] = []
         self._recognised: dict[File, Recognised] = {}
         self._coming: set[str] = set()
 
     def look(self) -> None:
-        """See which files there are; links are not followed, and neither runs nor hidden files are shown."""
+        """See which files there are; links are listed and not followed, and neither runs nor hidden files are shown."""
         self.n_left_out = 0
         listed: dict[str, File] = {}
+        refused: list[File] = []
         for file in self._walk(self.folder, "", DEPTH):
-            if len(listed) < MOST_FILES:
-                listed[file.name] = file
-            else:
+            if len(refused if file.unusable else listed) >= (MOST_UNUSABLE if file.unusable else MOST_FILES):
                 self.n_left_out += 1
-        self.known = listed
+            elif file.unusable:
+                refused.append(file)
+            else:
+                listed[file.name] = file
+        self.known, self.refused = listed, refused
 
     def rows(self) -> list[dict[str, object]]:
         """Every file for a page; what is new is recognised."""
-        known = dict(self.known)
+        known, refused = dict(self.known), list(self.refused)
         fresh = {file: self._recognised.get(file) or recognise(self.folder / file.name) for file in known.values()}
         self._recognised = fresh
-        newest = sorted(known.values(), key=lambda file: (not file.name.startswith(f"{DROPPED}/"), file.name.casefold()))
+        fresh |= {file: Recognised(file.unusable, refused=True) for file in refused}
+        newest = sorted([*known.values(), *refused], key=lambda file: (not file.name.startswith(f"{DROPPED}/"), file.name.casefold()))
         return [
             {"name": f.name, "n_bytes": f.n_bytes, "changed_ns": f.changed_ns, "words": fresh[f].words, "refused": fresh[f].refused}
             for f in newest
@@ -136,21 +150,38 @@ class Files:
     def _walk(self, folder: Path, before: str, depth: int) -> Iterator[File]:
         try:
             entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
-        except OSError:
+        except OSError as e:
+            yield File(before.rstrip("/") or ".", 0, 0, f"a folder that cannot be read: {e.strerror or e}")
             return
         for entry in entries:
-            if entry.name.startswith(".") or entry.name.endswith(_PARTIAL) or not entry.name.isprintable():
+            if entry.name.startswith(".") or entry.name.endswith(_PARTIAL):
                 continue
+            name = f"{before}{entry.name}"
             try:
-                if entry.is_dir(follow_symlinks=False):
-                    if depth > 1 and not is_ours(entry, before):
-                        yield from self._walk(folder / entry.name, f"{before}{entry.name}/", depth - 1)
-                    continue
                 state = entry.stat(follow_symlinks=False)
-            except OSError:
+                is_folder = stat.S_ISDIR(state.st_mode)
+                if is_folder and is_ours(entry, before):
+                    continue
+            except OSError as e:
+                yield File(shown(name), 0, 0, f"cannot be read: {e.strerror or e}")
                 continue
-            if stat.S_ISREG(state.st_mode):
-                yield File(f"{before}{entry.name}", state.st_size, state.st_mtime_ns)
+            why = unusable(entry.name, state.st_mode)
+            if why or (is_folder and depth <= 1):
+                why = why or f"a folder {DEPTH} deep: its files are not listed"
+                yield File(shown(name), state.st_size, state.st_mtime_ns, why)
+            elif is_folder:
+                yield from self._walk(folder / entry.name, f"{name}/", depth - 1)
+            else:
+                yield File(name, state.st_size, state.st_mtime_ns)
+
+
+def unusable(name: str, mode: int) -> str:
+    """Why an entry of a folder cannot be named by a page; empty where it can."""
+    if stat.S_ISLNK(mode):
+        return "a link, which is not followed"
+    if not name.isprintable():
+        return "its name has characters that cannot be shown: rename it"
+    return "" if stat.S_ISREG(mode) or stat.S_ISDIR(mode) else "is not a file"
 
 
 def is_ours(entry: os.DirEntry[str], before: str) -> bool:

@@ -5,15 +5,17 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from dataclasses import dataclass
+import stat
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from navbound.errors import FormatError
+from navbound.errors import FormatError, visible
 from navbound.storage import folders
+from navbound.workbench.files import OUT, shown, unusable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
 DEPTH = 4
 MOST_RUNS = 500
@@ -83,12 +85,19 @@ class Runs:
         """See what there is, beside the folders that jobs are writing to."""
         listed: dict[str, Run] = {}
         seen: dict[tuple[str, tuple[tuple[str, int, int], ...]], Run] = {}
-        for path, name in self._walk(self.folder, "", DEPTH):
-            if name in busy or len(listed) >= MOST_RUNS:
+        n_left_out = 0
+        for path, name, trouble in self._walk(self.folder, "", DEPTH):
+            if name in busy:
+                continue
+            if len(listed) >= MOST_RUNS:
+                n_left_out += 1
                 continue
             key = (name, _state(path))
-            run = self._seen.get(key) or _read(path, name)
+            run = _refused(path, name, trouble) if trouble else self._seen.get(key) or _read(path, name)
             seen[key] = listed[run.id] = run
+        if n_left_out:
+            rest = _refused(self.folder, ".", f"{MOST_RUNS} of its runs are listed, {n_left_out} more are not")
+            listed[rest.id] = rest
         self._seen, self.known = seen, dict(sorted(listed.items(), key=lambda item: -item[1].ended_s))
 
     def comparable(self) -> list[str]:
@@ -104,25 +113,39 @@ class Runs:
         again = self._seen.get((run.name, _state(path)))
         return path / run.page if again is run else None
 
-    def _walk(self, folder: Path, before: str, depth: int) -> Iterator[tuple[Path, str]]:
+    def _walk(self, folder: Path, before: str, depth: int) -> Iterator[tuple[Path, str, str]]:
+        """Place, name and, where it cannot be used, the reason. What lies elsewhere than runs do, :class:`Files` lists."""
         try:
             entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
-        except OSError:
+        except OSError as e:
+            yield folder, before.rstrip("/") or ".", f"cannot be read: {e.strerror or e}"
             return
         for entry in entries:
-            if entry.name.startswith(".") or not entry.is_dir(follow_symlinks=False) or not entry.name.isprintable():
+            if entry.name.startswith("."):
                 continue
             path, name = folder / entry.name, f"{before}{entry.name}"
-            if _began(path):
-                yield path, name
-            elif depth > 1:
-                yield from self._walk(path, f"{name}/", depth - 1)
+            among_runs = name == OUT or before.startswith(f"{OUT}/")
+            try:
+                mode = entry.stat(follow_symlinks=False).st_mode
+            except OSError as e:
+                if among_runs:
+                    yield path, name, f"cannot be read: {e.strerror or e}"
+                continue
+            why = unusable(entry.name, mode)
+            is_folder = stat.S_ISDIR(mode)
+            if why and (among_runs or (is_folder and _began(path))):
+                yield path, name, why
+            elif is_folder and not why:
+                if _began(path):
+                    yield path, name, ""
+                elif depth > 1:
+                    yield from self._walk(path, f"{name}/", depth - 1)
 
 
 def _began(path: Path) -> bool:
     """Whether a job wrote here, or began to."""
     marks = (folders.MANIFEST, _RUN, *RECORDS)
-    return any((path / mark).is_file() for mark in marks) or bool(_unfinished(path) & {f"{mark}.partial" for mark in marks})
+    return any(os.path.isfile(path / mark) for mark in marks) or bool(_unfinished(path) & {f"{mark}.partial" for mark in marks})
 
 
 def _unfinished(path: Path) -> set[str]:
@@ -141,20 +164,39 @@ def _state(path: Path) -> tuple[tuple[str, int, int], ...]:
     return tuple(sorted((name, state.st_size, state.st_mtime_ns) for name, state in states))
 
 
+def _refused(path: Path, name: str, trouble: str) -> Run:
+    try:
+        ended_s = path.stat(follow_symlinks=False).st_mtime
+    except OSError:
+        ended_s = 0.0
+    return Run(_id(name), shown(name), ended_s, trouble=visible(trouble))
+
+
+def _id(name: str) -> str:
+    return hashlib.sha256(name.encode("utf-8", "surrogateescape")).hexdigest()[:16]
+
+
 def _read(path: Path, name: str) -> Run:
-    id_ = hashlib.sha256(name.encode("utf-8", "surrogateescape")).hexdigest()[:16]
     manifest = path / folders.MANIFEST
-    ended_s = (manifest if manifest.exists() else path).stat().st_mtime
     try:
         linked = [entry.name for entry in os.scandir(path) if entry.is_symlink()]
         if linked:
             raise FormatError(path, f"{linked[0]} is a link, which no job writes")
-        folders.require_whole(path, (), "a run")
+        if manifest.exists():
+            _require_small(manifest)
+        # What is shown of a run is what its job wrote: the manifest names every file that is read here.
+        used = [each for each in (_RUN, *RECORDS, *PAGES, *_COMPARED) if os.path.lexists(path / each)]
+        folders.require_whole(path, used, "a run")
+        if not {_RUN, *RECORDS} & {*used}:
+            raise FormatError(path, "no record says what it is")
+        stated, record = _first(path, RECORDS), _json(path / _RUN)
+        ended_s = manifest.stat().st_mtime
     except FormatError as e:
         began = _unfinished(path)
-        trouble = "the job that wrote here did not finish" if began or not manifest.exists() else e.message
-        return Run(id_, name, ended_s, trouble=trouble)
-    stated, record = _first(path, RECORDS), _json(path / _RUN)
+        refused = _refused(manifest if manifest.exists() else path, name, _words(e, path))
+        return replace(refused, trouble="the job that wrote here did not finish") if began or not manifest.exists() else refused
+    except OSError as e:
+        return _refused(path, name, f"cannot be read: {e.strerror or e}")
     verdict = stated.get("verdict")
     words = verdict.get("words") if isinstance(verdict, dict) else stated.get("words")
     if isinstance(words, list):
@@ -162,7 +204,7 @@ def _read(path: Path, name: str) -> Run:
         words = " ".join(map(str, words)) if (path / "comparison.json").is_file() else next(iter(words), "")
     page = next((each for each in PAGES if (path / each).is_file()), "")
     return Run(
-        id_,
+        _id(name),
         name,
         ended_s,
         title=_title(stated) or name,
@@ -189,10 +231,31 @@ def _first(path: Path, names: tuple[str, ...]) -> dict[str, Any]:
 
 
 def _json(path: Path) -> dict[str, Any]:
-    try:
-        if path.stat().st_size > _MOST_RECORD:
-            return {}
-        value = json.loads(path.read_bytes())
-    except (OSError, ValueError, RecursionError):
+    """A record; nothing where there is none.
+
+    Raises
+    ------
+    FormatError
+        It is damaged, or larger than is read here.
+    """
+    if not os.path.lexists(path):
         return {}
-    return value if isinstance(value, dict) else {}
+    _require_small(path)
+    try:
+        value = json.loads(path.read_bytes())
+    except (ValueError, RecursionError) as e:
+        raise FormatError(path, f"is damaged: {e}") from e
+    if not isinstance(value, dict):
+        raise FormatError(path, "is damaged: no object of JSON")
+    return value
+
+
+def _require_small(path: Path) -> None:
+    n_bytes = path.stat().st_size
+    if n_bytes > _MOST_RECORD:
+        raise FormatError(path, f"has {n_bytes} bytes, more than the {_MOST_RECORD} that are read here")
+
+
+def _words(error: FormatError, path: Path) -> str:
+    """The reason, with the name of the file where it is one of the run."""
+    return error.message if error.path == path else f"{Path(error.path).name}: {error.message}"
