@@ -74,7 +74,7 @@ def test_off_a_terminal_lines_say_how_far_the_work_is(monkeypatch: pytest.Monkey
     assert kept.getvalue() == ended
 
 
-def test_who_reads_a_file_is_told_nothing_on_standard_error(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_nothing_stands_on_standard_error_where_a_file_is_read(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     kept = io.StringIO()
     monkeypatch.setattr(parts, "err_console", Console(file=kept))
     monkeypatch.setattr(parts, "SAY_EVERY_S", 0.01)

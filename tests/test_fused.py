@@ -17,6 +17,7 @@ from navbound.run import fly
 from navbound.run.directory import Run
 from navbound.run.judge import judge
 from navbound.run.settings import Settings
+from navbound.run.verdict import faults
 from navbound.run.verdict.faults import fault_summaries
 from navbound.scenario import Scenario
 from navbound.studies.anp_comparison import study as anp_comparison
@@ -130,6 +131,7 @@ def test_every_shipped_fault_is_flown_and_summed_up(name: str, kinds: list[str])
     for fault in summaries:
         assert fault.nse_h_max_m is not None
         assert fault.words.endswith(".")
+        assert ";" not in fault.words
     by_kind = {f.kind: f for f in summaries}
     if "satellite-step" in by_kind:
         # A hundred metres against a deviation of some metres: gated from the first second, said after three.
@@ -325,3 +327,29 @@ def test_biases_of_the_unit_become_better_known(real: Material) -> None:
         assert (sigma > 0.0).all(), of
         # Two hours of satellites say more of a bias than the grade of the unit.
         assert sigma[-1] < sigma[0], of
+
+
+def test_what_became_of_a_fault_is_one_statement_a_sentence() -> None:
+    never = dict.fromkeys(("gate_after_s", "memory_after_s", "disagree_after_s", "mode_after_s", "mode", "alert_after_s", "alert"))
+    quiet = never | {"outcome_words": "the true error stayed inside RNP"}
+    assert faults._words(quiet, compared=True).split(". ") == [
+        "The filter's gate rejected no run of measurements",
+        "The filters with and without satellites agreed",
+        "The mode did not fall",
+        "There was no alert",
+        "The true error stayed inside RNP.",
+    ]
+    spoke = {
+        "gate_after_s": 2.0,
+        "disagree_after_s": 9.0,
+        "mode_after_s": 9.0,
+        "mode": "dme_dme",
+        "alert_after_s": 10.0,
+        "alert": "caution",
+    }
+    assert faults._words(quiet | spoke, compared=True).split(". ")[:4] == [
+        "The filter's gate rejected measurements after 2 s",
+        "The filters with and without satellites disagreed after 9 s",
+        "The mode fell to dme_dme after 9 s",
+        "The first alert (caution) came after 10 s",
+    ]

@@ -178,15 +178,20 @@ def _outcome(alert_s: float | None, outside_s: float | None, time_to_alert_s: fl
 
 
 def _words(v: dict[str, Any], *, compared: bool) -> str:
+    """One statement a sentence: each monitor in its turn, and what it meant at last."""
+    gate, memory, disagreed, fell, alert = (v[f"{each}_after_s"] for each in ("gate", "memory", "disagree", "mode", "alert"))
     agreed = ["the filters with and without satellites agreed"] if compared else []
-    spoke = [
-        f"the filter's gate after {v['gate_after_s']:.0f} s" if v["gate_after_s"] is not None else "the filter's gate not at all",
-        *([f"the memory of the innovations after {v['memory_after_s']:.0f} s"] if v["memory_after_s"] is not None else []),
-        *([f"the filters disagreed after {v['disagree_after_s']:.0f} s"] if v["disagree_after_s"] is not None else agreed),
-        f"the mode fell to {v['mode']} after {v['mode_after_s']:.0f} s" if v["mode_after_s"] is not None else "the mode did not fall",
-        f"the first alert ({v['alert']}) after {v['alert_after_s']:.0f} s" if v["alert_after_s"] is not None else "no alert",
+    statements = [
+        f"the filter's gate rejected measurements after {gate:.0f} s"
+        if gate is not None
+        else "the filter's gate rejected no run of measurements",
+        *([f"the innovations had memory after {memory:.0f} s"] if memory is not None else []),
+        *([f"the filters with and without satellites disagreed after {disagreed:.0f} s"] if disagreed is not None else agreed),
+        f"the mode fell to {v['mode']} after {fell:.0f} s" if fell is not None else "the mode did not fall",
+        f"the first alert ({v['alert']}) came after {alert:.0f} s" if alert is not None else "there was no alert",
+        v["outcome_words"],
     ]
-    return f"{', '.join(spoke)}; {v['outcome_words']}."
+    return " ".join(f"{each[0].upper()}{each[1:]}." for each in statements)
 
 
 def _outcome_words(outcome: Outcome, alert_s: float | None, outside_s: float | None, time_to_alert_s: float) -> str:
