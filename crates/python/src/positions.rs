@@ -476,6 +476,13 @@ fn geodetic_from_ecef<'py>(py: Python<'py>, ecef_m: PyReadonlyArray2<'py, f64>) 
     rows.as_flattened().to_vec().into_pyarray(py).reshape([rows.len(), 3])
 }
 
+/// Earth-fixed position \[m\] of latitude, longitude \[rad\] and height above the ellipsoid \[m\].
+#[pyfunction]
+fn ecef_from_geodetic(lat_rad: f64, lon_rad: f64, h_m: f64) -> PyResult<[f64; 3]> {
+    let point = LatLon::new(Radians::new(lat_rad), Radians::new(lon_rad)).map_err(|e| input_error(e, None))?;
+    Ok((*frame::ecef_from_geodetic(&Geodetic { point, height: Metres::new(h_m) }).vector()).into())
+}
+
 /// Delay on L1 by NTCM-G \[m\]: effective ionisation level \[sfu\], receiver \[rad, rad, m\], azimuth and elevation \[rad\], GPS time \[ns\].
 #[pyfunction]
 fn ntcm_delay(level_sfu: f64, place: (f64, f64, f64), sight: (f64, f64), time_ns: i64) -> PyResult<f64> {
@@ -491,6 +498,7 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<Navigation>()?;
     m.add_function(wrap_pyfunction!(raw_log, m)?)?;
     m.add_function(wrap_pyfunction!(geodetic_from_ecef, m)?)?;
+    m.add_function(wrap_pyfunction!(ecef_from_geodetic, m)?)?;
     m.add_function(wrap_pyfunction!(unused_reasons, m)?)?;
     m.add_function(wrap_pyfunction!(satellite_fates, m)?)?;
     m.add_function(wrap_pyfunction!(ntcm_delay, m)?)?;

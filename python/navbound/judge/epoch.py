@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from navbound.judge.settings import Settings
 
 _COLUMNS = _core.judge_columns()
-_KEYS = dict.fromkeys(("time_ns", "status", *_COLUMNS))
+_KEYS = tuple(dict.fromkeys(("time_ns", "status", *_COLUMNS)))
+_KNOWN = frozenset({*_KEYS, *(column.name for column in columns.EPOCHS)})
 _STATUS = {id_: code for code, id_ in enumerate(status_list.STATUSES)}
 _STATUSES = list(status_list.STATUSES)
 
@@ -62,7 +63,7 @@ class Judged:
 
 def _refuse_unknown(epoch: Mapping[str, Any]) -> None:
     for key in epoch:
-        if key not in _KEYS and not any(column.name == key for column in columns.EPOCHS):
+        if key not in _KNOWN:
             near = difflib.get_close_matches(shown(key), _KEYS, 1)
             meant = f"; did you mean {near[0]}?" if near else ""
             domain = f"columns of the epoch table (judged are {', '.join(_KEYS)}){meant}"

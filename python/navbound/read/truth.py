@@ -38,8 +38,6 @@ _POINTS = (
     "LAT,LON,H in degrees and metres above the ellipsoid (latitude within 90, longitude within 180, height from -1000 to 100000), "
     "X,Y,Z in metres, Earth-fixed, of a point within 100 km of the Earth's surface, or a file"
 )
-_SEMI_MAJOR_M, _FLATTENING = 6378137.0, 1.0 / 298.257223563
-"""Of the WGS-84 ellipsoid (NIMA TR8350.2, table 3.1)."""
 
 
 @dataclass(frozen=True)
@@ -102,16 +100,8 @@ def truth_of(source: str | Path | None, tolerance_s: float, columns: Mapping[str
         raise InputError("truth", text, domain=_POINTS)
     lat_deg, lon_deg, h_m = values
     words = f"latitude {lat_deg:.12g} deg, longitude {lon_deg:.12g} deg, height {h_m:.12g} m above the ellipsoid (WGS-84)"
-    return Truth(text, _earth_fixed(math.radians(lat_deg), math.radians(lon_deg), h_m), tolerance_s, columns or {}, words)
-
-
-def _earth_fixed(lat_rad: float, lon_rad: float, h_m: float) -> NDArray[np.float64]:
-    """Earth-fixed position [m] of latitude, longitude and height (NIMA TR8350.2, equation 4-14); the inverse of ``gnss.geodetic``."""
-    eccentricity_2 = _FLATTENING * (2.0 - _FLATTENING)
-    normal_m = _SEMI_MAJOR_M / math.sqrt(1.0 - eccentricity_2 * math.sin(lat_rad) ** 2)
-    level_m = (normal_m + h_m) * math.cos(lat_rad)
-    up_m = (normal_m * (1.0 - eccentricity_2) + h_m) * math.sin(lat_rad)
-    return np.array([level_m * math.cos(lon_rad), level_m * math.sin(lon_rad), up_m])
+    place = np.array(_core.ecef_from_geodetic(math.radians(lat_deg), math.radians(lon_deg), h_m))
+    return Truth(text, place, tolerance_s, columns or {}, words)
 
 
 def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str, Reading | None, TruthDoubts]:
