@@ -18,7 +18,8 @@ DOUBTED_AT = 0.05
 
 DOUBTED_BESIDE_AT = 0.01
 """The same of the tests beside the lateral bounds: these carry no lateral verdict, so that one error by chance is no doubt of it, and
-withdraws the vertical claim alone. Provenance: ours."""
+withdraws the vertical claim alone. Provenance: ours. Of 400 runs of 400 true errors that no choice was made on it takes "inside" from 3,
+as the lateral bounds do from 3, and the vertical claim is withdrawn in 11."""
 
 MEANS_INSIDE: dict[VerdictId, bool | None] = {
     "inside": True,
