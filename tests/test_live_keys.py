@@ -42,6 +42,7 @@ def lived(folder: Path, **more: object) -> tuple[pl.DataFrame, dict[str, int]]:
 
 
 HEARD = (
+    "err2d error2d hpe hpe95 hAcc95 h95 mrse "
     "hAcc h_acc HACC_mm eph eph_m ehe epe cep95 2drms horizontalAccuracy position_accuracy accuracy sigma_h ANP HIL hil_nm "
     "HorizontalIntegrityLimit containment_radius"
 )

@@ -210,7 +210,7 @@ _SPEAKS = _words(
     "epx epy epd hrms vrms 2drms cep50 cep95 r95 sd sdev ehe eve hdop pdop pl level major minor outage dr mlat tisb datum covariance type "
     "available availability exceeded exceedance herr verr poserr "
     "deviation cdi monitor message msg state carrsoln "
-    "hpe herror residual misfit dev unc uncert smaj rss tke ci95 ci "
+    "hpe herror h50 h95 mrse residual misfit dev unc uncert smaj rss tke ci95 ci "
     "confidence outlier misleading degraded lost loss solution denied reckoning estimated predicted propagated simulated source "
 )
 """Parts of names that speak of validity, accuracy or integrity. Provenance: ours."""
@@ -225,7 +225,7 @@ def kind_of(plain_name: str) -> Kind | None:
 
 _ACCURACY = _words(
     "acc hacc pacc accuracy uncertainty sigma std stddev sd sdev epe eph ehpe ehe epx epy cep cep50 cep95 r95 drms 2drms rms hrms hfom "
-    "twodrms hpe herror "
+    "twodrms hpe herror h50 h95 mrse "
     "fom nse tse fte err error errors herr poserr"
 )
 """Parts of names of a horizontal accuracy or error, a length. Provenance: ours."""
@@ -247,7 +247,8 @@ def _parts_of_lengths(name: str) -> set[str]:
     return parts | {_OF_PLANE_OR_SHARE.sub("", part) for part in parts}
 
 
-_OF_PLANE_OR_SHARE = re.compile(r"(?<=[a-z])(2d|50|67|68|95|99)$")
+_ENDINGS = ("2d", "50", "67", "68", "95", "99")
+_OF_PLANE_OR_SHARE = re.compile(rf"(?<=[a-z])({'|'.join(_ENDINGS)})$")
 """Endings of an error in the plane, and of the share of errors within a length."""
 
 
@@ -305,7 +306,11 @@ def speaks_of_level(name: str) -> bool:
 _WHOSE = _words("h horizontal pos position gps gnss horizontal_position estimated_horizontal estimated_horizontal_position")
 _WHAT = _words("acc accuracy uncertainty sigma std stddev")
 BARE_LENGTHS = (
-    _words("anp hacc pacc accuracy epe eph ehpe ehe epx epy cep cep50 cep95 r95 drms 2drms twodrms hrms hfom herr poserr")
+    _words(
+        "anp hacc pacc accuracy epe eph ehpe ehe epx epy cep cep50 cep95 r95 drms 2drms twodrms hrms hfom herr poserr "
+        "hpe herror h50 h95 mrse"
+    )
+    | {f"{what}{ending}" for what in _words("err error hpe herror hacc") for ending in _ENDINGS}
     | _LEVEL
     | _words("protection_level containment_radius containment_limit horizontal_integrity_level horizontal_integrity_limit")
     | {f"{whose}_{what}" for whose in _WHOSE for what in _WHAT}
