@@ -1,10 +1,13 @@
-"""Processes of our own do not hear Ctrl-C, from their first moment on."""
+"""Processes of our own do not hear Ctrl-C, from their first moment on, and begin whole wherever it is raised."""
 
 from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -14,8 +17,7 @@ from navbound.scale.spawned import CONTEXT, deaf_to_interrupts
 @pytest.mark.parametrize("late_s", [0.0, 0.005, 0.02, 0.05, 0.3])
 def test_a_child_that_begins_does_not_end_of_an_interrupt(late_s: float, capfd: pytest.CaptureFixture[str]) -> None:
     child = CONTEXT.Process(target=time.sleep, args=(0.5,))
-    with deaf_to_interrupts():
-        child.start()
+    deaf_to_interrupts(child.start)
     time.sleep(late_s)
     assert child.pid is not None
     os.kill(child.pid, signal.SIGINT)
@@ -24,7 +26,43 @@ def test_a_child_that_begins_does_not_end_of_an_interrupt(late_s: float, capfd: 
     assert capfd.readouterr().err == ""
 
 
-def test_who_starts_a_process_hears_interrupts_again() -> None:
-    with deaf_to_interrupts():
-        assert signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, [])
+def test_who_starts_a_process_hears_interrupts_still() -> None:
+    assert signal.SIGINT in deaf_to_interrupts(lambda: signal.pthread_sigmask(signal.SIG_BLOCK, []))
     assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, [])
+
+
+INTERRUPTED = '''
+"""Ctrl-C comes between the birth of a child and its first data, with a thread beside the main one that takes the signal."""
+import os, signal, threading, time
+from multiprocessing import util
+from navbound.scale.spawned import CONTEXT, deaf_to_interrupts
+
+def work():
+    print("worked", flush=True)
+
+if __name__ == "__main__":
+    threading.Thread(target=time.sleep, args=(30.0,), daemon=True).start()
+    spawn = util.spawnv_passfds
+
+    def interrupted(path, args, fds):
+        pid = spawn(path, args, fds)
+        if b"resource_tracker" not in b" ".join(os.fsencode(a) for a in args):
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(0.2)
+        return pid
+
+    util.spawnv_passfds = interrupted
+    child = CONTEXT.Process(target=work)
+    try:
+        deaf_to_interrupts(child.start)
+    except KeyboardInterrupt:
+        print("interrupted", flush=True)
+    child.join(60)
+'''
+
+
+def test_ctrl_c_between_the_birth_of_a_child_and_its_first_data_leaves_it_whole(tmp_path: Path) -> None:
+    program = tmp_path / "interrupted.py"
+    program.write_text(INTERRUPTED)
+    done = subprocess.run([sys.executable, program], capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stderr, sorted(done.stdout.split())) == (0, "", ["interrupted", "worked"])

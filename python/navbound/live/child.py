@@ -48,8 +48,7 @@ class Child:
     def __init__(self, work: Work, folder: Path, options: Any, name: str) -> None:
         self._pipe, theirs = CONTEXT.Pipe()
         self._process = CONTEXT.Process(target=_main, args=(work, folder, options, theirs), daemon=True)
-        with deaf_to_interrupts():
-            self._process.start()
+        deaf_to_interrupts(self._process.start)
         theirs.close()
         kind, text = "trouble", "it did not start"
         if self._pipe.poll(_START_S):

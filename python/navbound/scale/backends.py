@@ -9,6 +9,7 @@ from collections import deque
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from navbound.errors import ConflictError, InputError, NavboundError
@@ -107,8 +108,7 @@ def _pool(function: Function, left: dict[int, Any], count: int) -> Generator[tup
                 while waiting and waiting[0] < min(running.values(), default=waiting[0]) + AHEAD * count:
                     index = waiting.popleft()
                     # Workers start with the tiles that they are for.
-                    with deaf_to_interrupts():
-                        running[pool.submit(function, left[index])] = index
+                    running[deaf_to_interrupts(partial(pool.submit, function, left[index]))] = index
                 for future in wait(running, HEARD_S, FIRST_COMPLETED).done:
                     yield running.pop(future), future.result()
         except BaseException:

@@ -4,28 +4,38 @@ from __future__ import annotations
 
 import multiprocessing
 import signal
-from contextlib import contextmanager
+from concurrent.futures import ThreadPoolExecutor
 from multiprocessing import resource_tracker
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable
     from multiprocessing.context import SpawnContext
+
+    Started = TypeVar("Started")
 
 CONTEXT: SpawnContext = multiprocessing.get_context("spawn")
 """A forked child would inherit the locks of the threads of this process; a fresh interpreter has none."""
 
 
-@contextmanager
-def deaf_to_interrupts() -> Iterator[None]:
-    """Processes that start inside do not hear Ctrl-C, which a terminal sends to them too: who started them ends them.
+def deaf_to_interrupts(start: Callable[[], Started]) -> Started:
+    """What `start` returns. Processes that it starts do not hear Ctrl-C, which a terminal sends to them too: who started them ends them.
 
     A child that ignores the signal by itself is late: an interpreter that hears it while it begins ends with a fatal error.
+
+    Parameters
+    ----------
+    start : callable
+        It works in a thread of its own. Ctrl-C is raised in the main thread alone, wherever that is, even where the main thread blocks the
+        signal and another thread takes it; raised between the birth of a child and its first data, it leaves a child that reads nothing.
     """
+    with ThreadPoolExecutor(1) as alone:
+        return alone.submit(_blocked, start).result()
+
+
+def _blocked(start: Callable[[], Started]) -> Started:
     # It unblocks the signal when it starts: before the block.
     resource_tracker.ensure_running()
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    # A child inherits the mask of the thread that starts it.
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    return start()

@@ -33,8 +33,7 @@ class _Member:
         """Start it."""
         self.pipe, theirs = CONTEXT.Pipe()
         self.process = CONTEXT.Process(target=_main, args=(self._name, theirs), daemon=True)
-        with deaf_to_interrupts():
-            self.process.start()
+        deaf_to_interrupts(self.process.start)
         theirs.close()
         self.since_s = time.monotonic()
 
