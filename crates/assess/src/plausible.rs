@@ -251,7 +251,7 @@ impl Track {
             }
             self.last = Some((*report, here));
         }
-        let stands_s = self.gone.stands_falsely(report, limits).filter(|_| !unchanged);
+        let stands_s = self.gone.stands_falsely(report, limits);
         let returned = repeated(report, repeated_since, &Gone::default(), limits) == Finding::Stale && report.speed_mps.is_nan();
         if finding != Finding::Jump && (behind.or(stands_s).is_some() || returned || self.frozen) {
             finding = Finding::Stale;

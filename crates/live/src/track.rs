@@ -4,7 +4,7 @@ use crate::codec::{Damaged, Reader, Writer};
 use crate::order::Waiting;
 use crate::output::Kind;
 use navbound_core::judge::{self, Judge};
-use navbound_core::monitor::motion::{Fall, Gone, Motion, Report};
+use navbound_core::monitor::motion::{Fall, Gone, Motion, Owed, Report};
 use navbound_core::monitor::neighbours::{Height, Neighbours, Place};
 use navbound_core::quantity::{GpsTime, Metres};
 
@@ -88,6 +88,10 @@ impl Track {
             [fall.lat_rad, fall.lon_rad].into_iter().for_each(|number| to.f64(number));
             to.flag(fall.from_moving);
         });
+        to.option(gone.owed, |to, owed| {
+            [owed.lat_rad, owed.lon_rad, owed.way_m].into_iter().for_each(|number| to.f64(number));
+            to.option(owed.since, |to, since| to.i64(since.nanoseconds()));
+        });
         to.flag(gone.moved);
         to.f64(gone.crawled_s);
         to.option(self.motion.height, height);
@@ -130,6 +134,10 @@ impl Track {
             fell: from.option(|from| {
                 let time = GpsTime::from_nanoseconds(from.i64()?);
                 Ok(Fall { time, lat_rad: from.f64()?, lon_rad: from.f64()?, from_moving: from.flag()? })
+            })?,
+            owed: from.option(|from| {
+                let [lat_rad, lon_rad, way_m] = [from.f64()?, from.f64()?, from.f64()?];
+                Ok(Owed { lat_rad, lon_rad, way_m, since: from.option(Reader::i64)?.map(GpsTime::from_nanoseconds) })
             })?,
             moved: from.flag()?,
             crawled_s: from.f64()?,

@@ -122,6 +122,47 @@ impl Fall {
     }
 }
 
+/// After a gap longer than this an aircraft may have flown on and come back \[s\]. Provenance: ours.
+const RETURNS_S: f64 = 60.0;
+
+/// The way on which an aircraft can lose its speed, from the last report where all of it had been flown. Speed is lost only over a way:
+///
+/// ```text
+/// debt = v_0^2 / 2a - |place - place_0| - v^2 / 2a
+/// ```
+///
+/// A position that owes more than its noise for longer than a stale one may last did not stop there, however slowly its speed fell and wherever
+/// it creeps since.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Owed {
+    /// Latitude of that report \[rad\].
+    pub lat_rad: f64,
+    /// Longitude \[rad\].
+    pub lon_rad: f64,
+    /// Way to brake on from its speed \[m\].
+    pub way_m: f64,
+    /// Since when more than the noise is owed.
+    pub since: Option<GpsTime>,
+}
+
+impl Owed {
+    const fn from(report: &Report, way_m: f64) -> Self {
+        Self { lat_rad: report.lat_rad, lon_rad: report.lon_rad, way_m, since: None }
+    }
+
+    /// After the next report of a speed; `None` of the debt before begins with it.
+    fn after(before: Option<Self>, report: &Report, noise_m: f64) -> Self {
+        let way_m = report.speed_mps * report.speed_mps / (2.0 * BRAKING_MPS2);
+        let Some(before) = before else { return Self::from(report, way_m) };
+        let [east, north] = east_north_m([before.lat_rad, before.lon_rad], [report.lat_rad, report.lon_rad]);
+        let debt_m = before.way_m - hypot(east, north) - way_m;
+        if debt_m <= 0.0 {
+            return Self::from(report, way_m);
+        }
+        Self { since: (debt_m > noise_m).then(|| before.since.unwrap_or(report.time)), ..before }
+    }
+}
+
 /// What an aircraft says of its own speed, above all while its position stays the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gone {
@@ -135,6 +176,8 @@ pub struct Gone {
     pub braked_mps: f64,
     /// Where the reported speed fell faster than an aircraft brakes, until the position has left: it is no evidence that the aircraft stands.
     pub fell: Option<Fall>,
+    /// Way to brake on that was not flown.
+    pub owed: Option<Owed>,
     /// The position has changed.
     pub moved: bool,
     /// How much longer than by their times the reports of a position took to arrive, at least \[s\].
@@ -143,7 +186,7 @@ pub struct Gone {
 
 impl Default for Gone {
     fn default() -> Self {
-        Self { seen: None, way_m: 0.0, stood_s: 0.0, braked_mps: f64::NAN, fell: None, moved: false, crawled_s: 0.0 }
+        Self { seen: None, way_m: 0.0, stood_s: 0.0, braked_mps: f64::NAN, fell: None, owed: None, moved: false, crawled_s: 0.0 }
     }
 }
 
@@ -169,13 +212,22 @@ impl Gone {
         self.fell = unmoved.or_else(|| falls.then(|| Fall::at(report, self.braked_mps > limits.moving_mps)));
         // f64::max prefers a number to a NaN.
         self.braked_mps = speed_mps.max(left_mps);
+        self.owed = self.owed.filter(|_| elapsed_s <= RETURNS_S);
+        // A report without a speed decides nothing.
+        if !speed_mps.is_nan() {
+            self.owed = Some(Owed::after(self.owed, report, limits.noise_m));
+        }
         self.seen = Some(report.time);
     }
 
-    /// For how long a position that changes has stood all the same, since a speed fell that no aircraft loses so fast \[s\]; none where it may be one.
+    /// For how long a position stands where no aircraft with its speeds could have stopped \[s\]: since a speed fell that none loses so fast, though
+    /// the position changes, or since it owes the way to brake on. None where it may be one, or where a receiver is known to stand.
     pub fn stands_falsely(&self, report: &Report, limits: &Limits) -> Option<f64> {
-        let fall = self.fell.filter(|fall| fall.from_moving && !within(report.time, fall.time, limits.stale_after_s))?;
-        Some(report.time.seconds_since(fall.time))
+        let fell = self.fell.filter(|fall| fall.from_moving).map(|fall| fall.time);
+        let owes = self.owed.filter(|_| limits.moving_mps.is_finite()).and_then(|owed| owed.since);
+        let lasting = |since: &GpsTime| !within(report.time, *since, limits.stale_after_s);
+        let since = [fell, owes].into_iter().flatten().filter(lasting).min()?;
+        Some(report.time.seconds_since(since))
     }
 }
 
@@ -297,12 +349,12 @@ impl Motion {
             let unchanged = report.lat_rad == from.lat_rad && report.lon_rad == from.lon_rad;
             let stood_s = self.gone.stood_s;
             self.gone.step(report, unchanged, limits);
-            if unchanged {
+            let step = if unchanged {
                 repeated(report, from.time, &self.gone, limits)
             } else {
-                let step = self.stepped(&from, report, &here, stood_s, limits)?;
-                if step != Finding::Jump && self.gone.stands_falsely(report, limits).is_some() { Finding::Stale } else { step }
-            }
+                self.stepped(&from, report, &here, stood_s, limits)?
+            };
+            if step != Finding::Jump && self.gone.stands_falsely(report, limits).is_some() { Finding::Stale } else { step }
         };
         if finding == Finding::Jump {
             self.dispute(report.time);
@@ -442,13 +494,57 @@ mod tests {
             assert!(verdicts[..102].iter().all(|each| *each == Finding::Plausible), "{amplitude_m}");
             assert!(verdicts[103..].iter().all(|each| *each == Finding::Stale), "{amplitude_m}: {verdicts:?}");
         }
-        // From a speed at which it need not move, and where it goes on.
+        // From a speed at which it need not move, and where it goes on after a way to brake on.
         let slow = |k: i64| report(k, 0.3 * libm::sin(12.9 * k as f64), if k < 10 { 14.9 } else { 0.0 });
         assert!(findings(&(0..60).map(slow).collect::<Vec<_>>(), &LIMITS).iter().all(|each| *each == Finding::Plausible));
         let taxies =
-            |k: i64| report(k, if k < 10 { 70.0 * k as f64 } else { 630.0 + 3.0 * (k - 9) as f64 }, if k < 10 { 70.0 } else { 3.0 });
+            |k: i64| report(k, if k < 10 { 70.0 * k as f64 } else { 875.0 + 3.0 * (k - 9) as f64 }, if k < 10 { 70.0 } else { 3.0 });
         let verdicts = findings(&(0..60).map(taxies).collect::<Vec<_>>(), &LIMITS);
         assert!(verdicts.iter().all(|each| *each == Finding::Plausible), "{verdicts:?}");
+    }
+
+    /// The position of second 100 with noise of decimetres, after which the speed falls as an aircraft brakes, rows are lost, or it creeps.
+    #[test]
+    fn a_stop_without_the_way_to_brake_on_is_none() {
+        let noisy = |k: i64, north_m: f64, speed_mps: f64| report(k, north_m + 0.3 * libm::sin(12.9 * k as f64), speed_mps);
+        let flown = |k: i64| noisy(k, 70.0 * k as f64, 70.0);
+        let ramp = |mps2: f64| move |k: i64| noisy(k, 7000.0, (70.0 - mps2 * (k - 100) as f64).max(0.0));
+        let creeps = |k: i64| noisy(k, 7000.0 + 0.5 * (k - 100) as f64, 0.0);
+        let creeps_after = |k: i64| noisy(k, 7000.0 + 0.5 * (k - 100) as f64, (70.0 - 3.5 * (k - 100) as f64).max(0.0));
+        // 145 m beyond the noise of 100 m: as soon as the speed that is left needs no more than that, and 2 s.
+        let seen_from = |next: &dyn Fn(i64) -> Report, from: i64| {
+            let reports: Vec<Report> = (0..=100).map(flown).chain((from..200).map(next)).collect();
+            let verdicts = findings(&reports, &LIMITS);
+            assert!(verdicts[..=100].iter().all(|each| *each == Finding::Plausible));
+            let first = verdicts.iter().position(|each| *each == Finding::Stale).unwrap();
+            assert!(verdicts[first..].iter().all(|each| *each == Finding::Stale), "{verdicts:?}");
+            reports[first].time.seconds_since(reports[100].time)
+        };
+        // v^2 / 20 is below 145 m at 53.8 m/s: after 2 s of 9 m/s2 and 5 s of 3.5 m/s2; a creep has gone 2.5 m until then.
+        assert_eq!(seen_from(&ramp(9.0), 101), 5.0);
+        assert_eq!(seen_from(&ramp(3.5), 101), 8.0);
+        assert_eq!(seen_from(&creeps, 101), 4.0);
+        assert_eq!(seen_from(&creeps_after, 101), 8.0);
+        assert_eq!(seen_from(&|k| noisy(k, 7000.0, 0.0), 113), 16.0);
+        assert_eq!(seen_from(&|k| noisy(k, 7000.0, 0.0), 111), 14.0);
+    }
+
+    /// Braking as hard as any does, turning, and a gap in which it may have come back.
+    #[test]
+    fn an_aircraft_that_flies_the_way_to_brake_on_owes_nothing() {
+        for braking_mps2 in [2.0, 4.0, 8.0] {
+            let speed = |k: i64| (70.0 - braking_mps2 * (k - 50).max(0) as f64).max(0.0);
+            let north = |k: i64| (0..k).map(|j| 0.5 * (speed(j) + speed(j + 1))).sum::<f64>();
+            let verdicts = findings(&(0..300).map(|k| report(k, north(k), speed(k))).collect::<Vec<_>>(), &LIMITS);
+            assert!(verdicts.iter().all(|each| *each == Finding::Plausible), "{braking_mps2}");
+        }
+        // A circle of 50 s at 70 m/s, then a stop with 4 m/s2.
+        let speed = |k: i64| if k < 50 { 70.0 } else { (70.0 - 4.0 * (k - 50) as f64).max(0.0) };
+        let way = |k: i64| (0..k).map(|j| 0.5 * (speed(j) + speed(j + 1))).sum::<f64>();
+        let turn = |k: i64| report(k, 557.0 * libm::sin(way(k) / 557.0), speed(k));
+        assert!(findings(&(0..120).map(turn).collect::<Vec<_>>(), &LIMITS).iter().all(|each| *each == Finding::Plausible));
+        let back = |k: i64| if k < 100 { report(k, 70.0 * k as f64, 70.0) } else { report(k + 3000, 6930.5, 0.0) };
+        assert!(findings(&(0..200).map(back).collect::<Vec<_>>(), &LIMITS).iter().all(|each| *each == Finding::Plausible));
     }
 
     /// 70 m/s to nothing in 20 s, 25 m/s in 3 s, and minutes of the same bits.
