@@ -26,7 +26,7 @@ settings.register_profile("repeatable", derandomize=True)
 settings.load_profile("repeatable")
 
 
-LONG = ("site", "wheel", "large_tables", "demo", "live_browser", "cli", "report_browser", "predict_flight")
+LONG = ("site", "wheel", "large_tables", "live_browser", "cli", "report_browser", "predict_flight")
 """Files that take a minute and more, the longest first: one that begins last is waited for while the other cores rest."""
 
 
