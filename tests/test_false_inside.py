@@ -509,3 +509,22 @@ def test_the_rest_of_a_truth_that_contradicts_itself_shows_nothing(tmp_path: Pat
     verdict = navbound.analyze(tmp_path / "a.csv", truth=tmp_path / "t.csv").summary.verdict
     assert verdict.n_truth < 10
     assert verdict.id == "not_shown"
+
+
+@pytest.mark.parametrize(("every", "named"), [(3, True), (200, False)])
+def test_epochs_that_are_absent_in_short_gaps_are_named(tmp_path: Path, every: int, named: bool) -> None:
+    kept = np.arange(N) % every != 1
+    verdict = run(tmp_path, **{name: values[kept] for name, values in columns().items()}).summary.verdict
+    assert (verdict.n_absent, verdict.n_epochs) == (N - kept.sum(), kept.sum())
+    words = f"{verdict.n_absent} epochs that the usual step leaves room for are absent, in gaps too short to count"
+    assert (words in verdict.words, words in verdict.lead) == (named, named)
+
+
+def test_heights_that_no_vertical_bound_judges_are_named(tmp_path: Path) -> None:
+    heights = with_truth(h_m=np.full(N, 1000.0), truth_h_m=np.full(N, 1000.0) + np.where(np.arange(N) < 100, 6000.0, 1.0))
+    verdict = run(tmp_path, **heights).summary.verdict
+    assert verdict.largest_height_error_m == pytest.approx(6000.0, abs=1e-3)
+    assert "Heights differ from the truth by up to 6000 m; no vertical bound judges them." in verdict.words
+    beside = run(tmp_path, **with_truth()).summary.verdict
+    assert beside.largest_height_error_m is None
+    assert "no vertical bound" not in beside.words

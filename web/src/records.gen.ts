@@ -626,10 +626,14 @@ export interface Verdict {
     n_unjudged: number;
     /** Of those, epochs that a gap of the table should have held, and recorded rows without a usable time and position. */
     n_missing: number;
+    /** Epochs that the usual step leaves room for in gaps too short to count; expected by nobody. */
+    n_absent: number;
     /** Approaches to runways that were judged. */
     n_approaches: number;
     /** Passes along a runway's centreline that stray, or end, before they are an approach; none of their epochs is judged. */
     n_unjudged_approaches: number;
+    /** Where no vertical bound judges: the largest known error of a height; None where one does, or none is known. [m] */
+    largest_height_error_m: number | null;
     /** Epochs with status ok or degraded whose bound is beyond its limit. */
     n_outside: number;
     /** Epochs with status ok, a bound within its limit and a known error beyond twice RNP. */

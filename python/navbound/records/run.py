@@ -125,10 +125,14 @@ class Verdict(Record):
     """Epochs of any other kind: without position, covariance or bound, or missing."""
     n_missing: int = 0
     """Of those, epochs that a gap of the table should have held, and recorded rows without a usable time and position."""
+    n_absent: int = 0
+    """Epochs that the usual step leaves room for in gaps too short to count; expected by nobody."""
     n_approaches: int = 0
     """Approaches to runways that were judged."""
     n_unjudged_approaches: int = 0
     """Passes along a runway's centreline that stray, or end, before they are an approach; none of their epochs is judged."""
+    largest_height_error_m: float | None = None
+    """Where no vertical bound judges: the largest known error of a height; None where one does, or none is known. [m]"""
     n_outside: int = 0
     """Epochs with status ok or degraded whose bound is beyond its limit."""
     n_known_beyond: int = 0

@@ -3,22 +3,28 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 
 import polars as pl
 
 from navbound import rnp
 from navbound.rnp.exposure import LONGEST_STEP_S
 
+USUAL = 0.25
+"""The usual step is the shortest that is at least this share of the steps of at most two seconds, to the millisecond: a table without every
+other or third row has two, and a receiver whose steps wander has none. Provenance: ours. [1]"""
+
 
 class Gaps:
     """Epochs that should have been there: recorded rows that are no epochs, and what the gaps beside them should have held.
 
-    A gap counts where it is longer than the monitor waits before it says that there is nothing. A left out row in it counts once. Epochs
-    come in the order of track and time, in pieces of any length.
+    A gap counts where it is longer than the monitor waits before it says that there is nothing. A left out row in it counts once. What a
+    shorter gap leaves room for is counted apart. Epochs come in the order of track and time, in pieces of any length.
     """
 
     def __init__(self, left_out: pl.DataFrame, period_s: float) -> None:
-        self._n_left_out, self._period_s, self._n = left_out.height, period_s, 0
+        self._n_left_out, self._period_s = left_out.height, period_s
+        self._n, self._short_ms = 0, Counter[int]()
         self._rest = left_out.drop_nulls("time_ns").unique().sort("track", "time_ns")
         self._last = self._rest.clear()
         self._longest_s = rnp.Monitor(sample_period_s=min(period_s, LONGEST_STEP_S), time_to_alert_s=math.inf).stale_after_s
@@ -34,8 +40,12 @@ class Gaps:
     def _count(self, rows: pl.DataFrame) -> None:
         rows = pl.concat([self._last, rows.unique().sort("track", "time_ns")])
         step = pl.col("time_ns").diff().over("track").cast(pl.Float64) * 1e-9
-        gaps = rows.select(step=step).filter(pl.col("step") > self._longest_s)
-        self._n += int(gaps.select(((pl.col("step") / self._period_s).round() - 1).sum()).item() or 0)
+        steps = rows.select(step=step)["step"].drop_nulls()
+        gaps = steps.filter(steps > self._longest_s)
+        self._n += int(((gaps / self._period_s).round() - 1).sum())
+        # A step between rows that stand for one epoch is none.
+        short_ms = (steps.filter(steps <= self._longest_s) * 1e3).round().cast(pl.Int64)
+        self._short_ms.update(dict(short_ms.filter(short_ms > 0).value_counts().iter_rows()))
         self._last = rows.tail(1)
 
     def n_missing(self) -> int:
@@ -44,3 +54,9 @@ class Gaps:
             self._count(self._rest)
             self._rest = self._rest.clear()
         return self._n_left_out + self._n
+
+    def n_absent(self) -> int:
+        """Epochs that the usual step leaves room for in gaps too short to count; 0 where no step is usual."""
+        n_steps = sum(self._short_ms.values())
+        usual = min((ms for ms, n in self._short_ms.items() if n >= USUAL * n_steps), default=None)
+        return 0 if usual is None else sum(n * (round(ms / usual) - 1) for ms, n in self._short_ms.items() if ms > usual)

@@ -82,6 +82,7 @@ class Sums:
         self.doubts = Doubts(with_levels, recorded=material.kind == "analyze")
         self.gaps = Gaps(material.left_out, material.sample_period_s)
         self.n = self.n_judged = self.n_inside = self.n_contained = self.n_outside = self.n_known_beyond = self.n_truth = 0
+        self.largest_height_error_m: float | None = None
         self.n_status: Counter[str] = Counter()
         self.n_reason: Counter[str] = Counter()
         self.worst: list[Worst | None] = [None, None]
@@ -97,7 +98,19 @@ class Sums:
 
     def see_all(self, epochs: Table) -> None:
         """Every epoch, of the columns that are read here."""
-        read = ("phase", "rnp_m", "along_m", "integrity_compared_m", "reason_id", "nse_h_m", "fte_m", "tse_m", "p_exceed_2rnp", *NEIGHBOURS)
+        read = (
+            "phase",
+            "rnp_m",
+            "along_m",
+            "integrity_compared_m",
+            "reason_id",
+            "nse_h_m",
+            "nse_u_m",
+            "fte_m",
+            "tse_m",
+            "p_exceed_2rnp",
+            *NEIGHBOURS,
+        )
         doubted = ("hpl_m", ERROR, ALERT, WORSE, CONTAINMENT)
         judged = method(self._judging)
         for piece in pieces(epochs, ["track", "time_ns", "status", *read, *doubted, judged.column, judged.integrity_column]):
@@ -117,6 +130,10 @@ class Sums:
         if "nse_h_m" in margins.columns:
             self.n_known_beyond += int(margins.select(KNOWN_BEYOND.sum()).item())
             self.n_truth += int(np.isfinite(column_of(margins, "nse_h_m")).sum())
+        if "nse_u_m" in margins.columns:
+            largest = column_of(margins, "nse_u_m")
+            finite = np.abs(largest[np.isfinite(largest)])
+            self.largest_height_error_m = _largest(self.largest_height_error_m, float(finite.max()) if finite.size else None)
         self.n_status.update(by_status(margins))
         self.n_reason.update(by_reason(margins))
         for k, worst in enumerate(worst_of(margins, self._judging)):

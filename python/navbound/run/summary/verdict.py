@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 from navbound.methods import method
 from navbound.records.run import Belief, MethodResult, ProtectionSummary, Verdict, Worst
 from navbound.run.verdict import rule
-from navbound.run.verdict.belief import of_epochs
+from navbound.run.verdict.belief import is_vertical, of_epochs
 from navbound.run.verdict.results import protection_words, verdict_words
 
 if TYPE_CHECKING:
@@ -51,6 +51,8 @@ class VerdictFacts:
     belief: Belief | None = None
     n_known_beyond: int = 0
     n_truth: int = 0
+    n_absent: int = 0
+    largest_height_error_m: float | None = None
 
 
 def facts_of(sums: Sums, epochs: Table, stated: list[MethodResult], risks: tuple[float, float]) -> VerdictFacts:
@@ -69,6 +71,8 @@ def facts_of(sums: Sums, epochs: Table, stated: list[MethodResult], risks: tuple
         belief=of_epochs(epochs, stated[0].id, risks, [each.id for each in stated]),
         n_known_beyond=sums.n_known_beyond,
         n_truth=sums.n_truth,
+        n_absent=sums.gaps.n_absent(),
+        largest_height_error_m=sums.largest_height_error_m,
     )
 
 
@@ -109,6 +113,8 @@ def verdict_of(
         n_degraded=n_degraded,
         n_unjudged=n_epochs - known.n_judged - n_degraded,
         n_missing=known.n_missing,
+        n_absent=known.n_absent,
+        largest_height_error_m=None if belief and any(map(is_vertical, belief.beside)) else known.largest_height_error_m,
         n_reason=known.n_reason,
         n_approaches=facts.n_approaches,
         n_unjudged_approaches=facts.n_unjudged_approaches,

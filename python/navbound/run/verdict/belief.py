@@ -155,9 +155,14 @@ def of_epochs(epochs: Table, judging: str, risks: tuple[float, float], stated: S
     )
 
 
+def is_vertical(check: BoundCheck) -> bool:
+    """Whether the vertical is in what a bound judges."""
+    return method(check.method).error_column in VERTICAL
+
+
 def is_excluded_vertical(check: BoundCheck) -> bool:
     """Whether a bound in which the vertical is holds less than it claims by its whole interval."""
-    return method(check.method).error_column in VERTICAL and check.coverage_high < 1.0 - check.risk
+    return is_vertical(check) and check.coverage_high < 1.0 - check.risk
 
 
 def _tested(epochs: _Usable, ids: Sequence[str], risks: tuple[float, float], independent: Callable[[str], float]) -> list[_Tested]:

@@ -9,6 +9,11 @@ def length(metres: float) -> str:
     """A length with three significant digits; nautical miles from half a mile up."""
     if abs(metres) >= 0.5 * METRES_PER_NM:
         return f"{metres / METRES_PER_NM:.3g} NM"
+    return in_metres(metres)
+
+
+def in_metres(metres: float) -> str:
+    """A length that is never in nautical miles, a height: three significant digits, or all before the point."""
     return f"{metres:.3g} m" if abs(metres) < 100 else f"{metres:.0f} m"
 
 

@@ -58,6 +58,11 @@ def verdict_words(
             f"Between epochs nothing is known: {verdict.n_long_steps} steps are longer than a position takes to become stale, "
             f"the longest {verdict.longest_step_s:.6g} s."
         )
+    if verdict.n_absent > MANY_ABSENT * verdict.n_epochs:
+        parts.append(
+            f"{verdict.n_absent} epochs that the usual step leaves room for are absent, in gaps too short to count; "
+            "nothing is known of them."
+        )
     parts += unread_words(verdict.unread)
     judged_by = f"Judged by {judged.title} ({judged.id}, {judged.provenance})."
     worst = [] if verdict.worst_accuracy is None else [_worst(verdict.worst_accuracy, labels)]
@@ -108,6 +113,8 @@ def _first(verdict: Verdict, risks: tuple[float, float]) -> str:
     )
 
 
+MANY_ABSENT = 0.01
+"""Share of absent epochs beyond which the verdict names them: fewer are what rounded times leave. Provenance: ours. [1]"""
 _MOST_REASONS = 3
 """Reasons that are named. [1]"""
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from navbound.methods import method
 from navbound.records.verdict import LEAST_SHARE
 from navbound.run.verdict.belief import is_excluded_vertical
-from navbound.run.verdict.numbers import level, share
+from navbound.run.verdict.numbers import in_metres, level, share
 from navbound.run.verdict.rule import FEW_EPOCHS, SQUARE_OF_TRUE, TOO_SMALL
 
 if TYPE_CHECKING:
@@ -94,6 +94,10 @@ def _checked(verdict: Verdict) -> list[str]:
     # What truth contradicts stands in the first sentence already.
     other = _contained([check for check in belief.beside if check.method == "anp-vertical" and not check.refuted])
     vertical = [f"Of the vertical errors {'; '.join(other)}."] if other else []
+    if verdict.largest_height_error_m is not None:
+        vertical.append(
+            f"Heights differ from the truth by up to {in_metres(verdict.largest_height_error_m)}; no vertical bound judges them."
+        )
     known = f"{_known(belief)}: of the errors at these epochs {'; '.join(lateral)}."
     return [known, *_small(belief), *_few(belief), *vertical, *_below(belief), *_levels(belief)]
 
