@@ -19,6 +19,7 @@ from navbound.run.directory import Run
 from navbound.run.inputs import solved
 from navbound.run.inputs.solving import Solving
 from navbound.run.judge import judge
+from navbound.run.summary.missing import Gaps
 
 N = 600
 START_S = 1_600_000_000.0
@@ -518,6 +519,15 @@ def test_epochs_that_are_absent_in_short_gaps_are_named(tmp_path: Path, every: i
     assert (verdict.n_absent, verdict.n_epochs) == (N - kept.sum(), kept.sum())
     words = f"{verdict.n_absent} epochs that the usual step leaves room for are absent, in gaps too short to count"
     assert (words in verdict.words, words in verdict.lead) == (named, named)
+
+
+@pytest.mark.parametrize(("steps_ms", "n_absent"), [((400, 500, 600), 0), ((400, 800, 400), 1), ((2, 3, 2), 0), ((1, 2, 2), 0)])
+def test_steps_that_wander_leave_no_room_for_epochs(steps_ms: tuple[int, int, int], n_absent: int) -> None:
+    gaps = Gaps(pl.DataFrame(schema={"track": pl.String, "time_ns": pl.Int64}), 0.5)
+    times = np.cumsum(np.tile(steps_ms, 200)) * 1_000_000
+    gaps.see(pl.DataFrame({"track": ["a"] * times.size, "time_ns": times}))
+    # A step ends at each time but the first.
+    assert gaps.n_absent() == 200 * n_absent
 
 
 def test_heights_that_no_vertical_bound_judges_are_named(tmp_path: Path) -> None:

@@ -632,7 +632,7 @@ export interface Verdict {
     n_approaches: number;
     /** Passes along a runway's centreline that stray, or end, before they are an approach; none of their epochs is judged. */
     n_unjudged_approaches: number;
-    /** Where no vertical bound judges: the largest known error of a height; None where one does, or none is known. [m] */
+    /** Where no vertical bound judges: the largest known error of the heights with status ok; None where one does, or none is known. [m] */
     largest_height_error_m: number | null;
     /** Epochs with status ok or degraded whose bound is beyond its limit. */
     n_outside: number;

@@ -132,7 +132,7 @@ class Verdict(Record):
     n_unjudged_approaches: int = 0
     """Passes along a runway's centreline that stray, or end, before they are an approach; none of their epochs is judged."""
     largest_height_error_m: float | None = None
-    """Where no vertical bound judges: the largest known error of a height; None where one does, or none is known. [m]"""
+    """Where no vertical bound judges: the largest known error of the heights with status ok; None where one does, or none is known. [m]"""
     n_outside: int = 0
     """Epochs with status ok or degraded whose bound is beyond its limit."""
     n_known_beyond: int = 0

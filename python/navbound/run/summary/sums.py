@@ -131,9 +131,9 @@ class Sums:
             self.n_known_beyond += int(margins.select(KNOWN_BEYOND.sum()).item())
             self.n_truth += int(np.isfinite(column_of(margins, "nse_h_m")).sum())
         if "nse_u_m" in margins.columns:
-            largest = column_of(margins, "nse_u_m")
-            finite = np.abs(largest[np.isfinite(largest)])
-            self.largest_height_error_m = _largest(self.largest_height_error_m, float(finite.max()) if finite.size else None)
+            heights = column_of(margins.filter(status="ok"), "nse_u_m")
+            known = np.abs(heights[np.isfinite(heights)])
+            self.largest_height_error_m = _largest(self.largest_height_error_m, float(known.max()) if known.size else None)
         self.n_status.update(by_status(margins))
         self.n_reason.update(by_reason(margins))
         for k, worst in enumerate(worst_of(margins, self._judging)):
