@@ -9,8 +9,12 @@ use navbound_core::bound::gbas::bias::Ordering;
 use navbound_core::bound::gbas::detection::Hazard;
 use navbound_core::bound::gbas::noise::{Coloured, Form};
 use navbound_core::bound::gbas::range::carrier_sigma;
-use navbound_core::bound::sbas::model::{Corrected, Elevation, broadcast_ionosphere_m2, troposphere_m2};
-use navbound_core::bound::tse::{Component, Deviation, deviations, farthest, ln_exceedance_risk, mixture, rf_fte, sigma_budget};
+use navbound_core::bound::sbas::Seen;
+use navbound_core::bound::sbas::ionosphere::Vertical;
+use navbound_core::bound::sbas::model::{Corrected, Elevation, RangeError, broadcast_ionosphere_m2, troposphere_m2};
+use navbound_core::bound::tse::{
+    Component, Deviation, PathDeviations, box_risk, deviations, farthest, ln_exceedance_risk, mixture, rf_fte, sigma_budget,
+};
 use navbound_core::frame::{Covariance, Displacement, Enu};
 use navbound_core::monitor::consistency::{integral_transform, normalised_square, normalised_square_horizontal};
 use navbound_core::monitor::rnp::Counters;
@@ -385,4 +389,40 @@ fn what_is_left_of_a_line_is_the_sum_of_its_squares() {
     let line = navbound_core::monitor::altimeter::setting_line([(0.0, 1.0), (1.0, 2.0), (2.0, 6.0), (3.0, 7.0)].into_iter()).unwrap();
     close(line.slope, 2.2, 1e-14);
     close(line.residual_sigma.m(), 0.9_f64.sqrt(), 1e-13);
+}
+
+/// Each of the two walls must be a distance: neither a negative nor an infinite one is.
+#[test]
+fn walls_of_a_box_are_finite_and_not_negative() {
+    let of = |v: f64| Deviation::new(Metres::new(v), Metres::new(5.0)).unwrap();
+    let errors = PathDeviations { lateral: of(1.0), vertical: of(2.0), correlation: 0.0 };
+    let refused = |l: f64, v: f64| box_risk(&errors, Metres::new(l), Metres::new(v)).err().map(|e| e.argument);
+    for bad in [-1.0, f64::INFINITY, f64::NAN, f64::NEG_INFINITY] {
+        assert_eq!(refused(bad, 10.0), Some("limit_m"), "{bad}");
+        assert_eq!(refused(10.0, bad), Some("limit_v_m"), "{bad}");
+    }
+    assert_eq!(refused(0.0, 10.0), None);
+}
+
+/// A shell of 350 km seen at 30 degrees, worked out with the sine of the angle at the shell: F = 1 / cos(asin(R cos(el) / (R + h))).
+#[test]
+fn the_slant_ionosphere_is_the_vertical_one_times_the_obliquity() {
+    let error = RangeError { corrected_m2: 1.0, ionosphere_m2: 1.0, troposphere_m2: 1.0, airborne_m2: 1.0 };
+    for elevation_deg in [5.0_f64, 30.0, 90.0] {
+        let el = elevation_deg.to_radians();
+        let seen = Seen {
+            prn: 1,
+            iode: 0,
+            unit_enu: Vector3::new(0.6 * el.cos(), 0.8 * el.cos(), el.sin()),
+            elevation: Radians::new(el),
+            delta_udre: 1.0,
+            fast_m: 0.0,
+            clock_s: 0.0,
+            vertical: Vertical { delay_m: 4.0, variance_m2: 1.0 },
+            from_grid: true,
+            error,
+        };
+        let at_shell = (6_378_136.3 * el.cos() / (6_378_136.3 + 350_000.0)).asin();
+        close(seen.slant_ionosphere_m(), 4.0 / at_shell.cos(), 1e-12);
+    }
 }

@@ -49,6 +49,18 @@ fn alerts(bounds: &[f64]) -> Vec<Alert> {
     (0..).zip(bounds).map(|(second, b)| monitor.step(&at(second, *b, 0.0)).alert).collect()
 }
 
+/// Time that is left until the caution, by hand: three seconds outside are needed, of which the first epoch outside is the begin.
+#[test]
+fn the_time_that_is_left_falls_by_the_time_outside_and_is_none_inside_or_after_the_alert() {
+    let mut monitor = Monitor::new(settings()).unwrap();
+    let bounds = [INSIDE, OUTSIDE, OUTSIDE, OUTSIDE, OUTSIDE, OUTSIDE];
+    let left = (0..).zip(bounds).map(|(second, b)| {
+        monitor.step(&at(second, b, 0.0));
+        monitor.caution_in_s()
+    });
+    assert_eq!(left.collect::<Vec<_>>(), [None, Some(3.0), Some(2.0), Some(1.0), None, None]);
+}
+
 fn seconds(time: GpsTime) -> i64 {
     time.nanoseconds() / 1_000_000_000
 }

@@ -103,8 +103,9 @@ impl<F: Frame> Covariance<F> {
 /// How far a correlation may be beyond one: what four decimals of a standard deviation of a millimetre leave. Provenance: ours \[1\].
 const ROUNDED: f64 = 0.1;
 
-/// A variance below it counts as zero: a position in radians has a last bit of 1.4 nm on the ground, 2^-52 of 6371 km \[m²\]. Derived.
-pub const LEAST_VARIANCE_M2: f64 = (f64::EPSILON * 6_371_000.0) * (f64::EPSILON * 6_371_000.0);
+/// A variance below it counts as zero: no position of a vehicle is measured to a tenth of a millimetre, so that one who writes less has
+/// written a zero with a guard, or another unit \[m²\]. Provenance: ours.
+pub const LEAST_VARIANCE_M2: f64 = 1e-8;
 
 /// Whether a variance is none of a measured position. One further below zero is no variance, which is another fault \[m²\].
 pub fn counts_as_zero(variance_m2: f64) -> bool {

@@ -72,6 +72,15 @@ NO_ALERT = _words(
 )
 """Words that state that there is no alert. Any other is one: nobody knows what it means, and it is not "normal"."""
 
+_ALARMS = _words("spoof spoofed spoofing jam jammed jamming anomaly error err fault failure alarm alert warning")
+_ALARM_FLAGS = (
+    {f"{word}_{what}" for word in (*_ALARMS, "nav_error", "gps_error", "gnss_error") for what in ("flag", "detected", "active", "raised", "set")}
+    | _ALARMS - {"error", "err"}
+    | {f"{level}_exceeded" for level in ("hal", "hil", "hpl", "hul", "pl", "xpl", "al", "limit", "alert_limit")}
+    | {f"{whose}_{word}" for word in _ALARMS - {"error", "err"} for whose in ("gps", "gnss", "nav", "pos", "position", "is", "integrity", "raim")}
+)
+"""Names of flags that are raised against a position. Provenance: ours."""
+
 NO_INTEGRITY = _words("n no none off false")
 """Words that state that there is no integrity or no monitor, where the column is named by what it has."""
 
@@ -188,8 +197,9 @@ KINDS: tuple[Kind, ...] = (
             "position_invalid unreliable outlier misleading hmi error_flag do_not_use not_valid degraded unable_rnp rnp_alert rnp_warning "
             "raim_flag unhealthy unsafe rejected bad frozen stale stuck mock mocked is_mock mock_location is_mocked from_mock_provider "
             "mi sim simulator reverted reversion nav_accuracy_downgraded navaccuracydowngrad "
-            "is_from_mock_provider is_spoofed gps_spoofed gnss_spoofed is_jammed gps_jammed gnss_jammed simulated_location"
-        ),
+            "is_from_mock_provider simulated_location"
+        )
+        | _ALARM_FLAGS,
         frozenset(),
         NO_ALERT,
         other_against=True,
@@ -212,6 +222,7 @@ _SPEAKS = _words(
     "deviation cdi monitor message msg state carrsoln "
     "hpe herror h50 h95 mrse residual misfit dev unc uncert smaj rss tke ci95 ci "
     "confidence outlier misleading degraded lost loss solution denied reckoning estimated predicted propagated simulated source "
+    "p50 p67 p68 p95 p99 merit navperf rnp anomaly anomalies protected pte latency exceed exceeds svs used "
 )
 """Parts of names that speak of validity, accuracy or integrity. Provenance: ours."""
 
@@ -224,7 +235,7 @@ def kind_of(plain_name: str) -> Kind | None:
 
 
 _ACCURACY = _words(
-    "acc hacc pacc accuracy uncertainty sigma std stddev sd sdev epe eph ehpe ehe epx epy cep cep50 cep95 r95 drms 2drms rms hrms hfom "
+    "acc hacc pacc accuracy uncertainty unc sigma std stddev sd sdev epe eph ehpe ehe epx epy cep cep50 cep95 r95 drms 2drms rms hrms hfom "
     "twodrms hpe herror h50 h95 mrse "
     "fom nse tse fte err error errors herr poserr"
 )
@@ -304,7 +315,7 @@ def speaks_of_level(name: str) -> bool:
 
 
 _WHOSE = _words("h horizontal pos position gps gnss horizontal_position estimated_horizontal estimated_horizontal_position")
-_WHAT = _words("acc accuracy uncertainty sigma std stddev")
+_WHAT = _words("acc accuracy uncertainty unc sigma std stddev")
 BARE_LENGTHS = (
     _words(
         "anp hacc pacc accuracy epe eph ehpe ehe epx epy cep cep50 cep95 r95 drms 2drms twodrms hrms hfom herr poserr "

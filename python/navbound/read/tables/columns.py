@@ -97,6 +97,12 @@ def _q(name: str, low: float, high: float, **aliases: str) -> Quantity:
 
 _INF = math.inf
 
+_SATELLITES = (
+    "ns nsv num_sv n_sats nsats numsat num_sat numsats num_sats satellites n_satellites num_satellites sats svs n_used sats_used svs_used sv_used "
+    "satellites_used used_sats used_svs used_satellites n_sats_used n_sv_used num_sats_used num_sv_used num_satellites_used"
+)
+"""Names of the number of satellites of a position; one of those in view is none the smaller."""
+
 QUANTITIES: tuple[Quantity, ...] = (
     _q("est_lat_rad", -math.pi / 2, math.pi / 2, deg="latitude lat lat_deg latitude_deg est_lat_deg", rad="lat_rad latitude_rad"),
     _q(
@@ -147,7 +153,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     _q("nic", 0.0, 15.0, **{"1": "nic"}),
     # What cannot be a setting is judged where it is used: the position beside it is none the worse.
     _q("setting_hpa", -_INF, _INF, hpa="nav_qnh qnh qnh_hpa altimeter_setting_hpa"),
-    _q("n_sv", 0.0, 255.0, **{"1": "ns nsv num_sv n_sats nsats numsat num_sat numsats num_sats satellites n_satellites num_satellites"}),
+    _q("n_sv", 0.0, 255.0, **{"1": _SATELLITES}),
     _q("track", 0.0, 0.0, text="icao24 icao mmsi track_id flight_id aircraft_id vehicle_id"),
     _q("callsign", 0.0, 0.0, text="callsign flight"),
     _q("hpl_m", 0.0, 1e9, m="hpl horizontal_protection_level"),

@@ -170,3 +170,16 @@ fn numbers_that_are_none_are_named() {
     assert_eq!(invalid(monitor.monitored(&sky(6), &[f64::NAN; 6]).map(|m| m.levels)), "residual_m");
     assert_eq!(invalid(monitor.monitored(&sky(6), &[0.0; 5]).map(|m| m.levels)), "residual_m");
 }
+
+/// The deviation that an error names is the one that was given: the root of 1 / weight.
+#[test]
+fn a_weight_that_is_none_is_named_by_its_deviation() {
+    let named = |weight: f64| match checked(&Row { unit: Vector3::z(), weight, clock: 0, residual: 0.0 }).unwrap_err() {
+        Unavailable::Invalid { field, value, .. } => (field, value),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(named(f64::INFINITY), ("sigma_m", 0.0));
+    assert_eq!(named(0.0), ("sigma_m", f64::INFINITY));
+    assert!(named(-4.0).1.is_nan());
+    assert!(checked(&Row { unit: Vector3::z(), weight: 4.0, clock: 0, residual: 0.0 }).is_ok());
+}

@@ -134,6 +134,15 @@ mod tests {
         }
     }
 
+    /// The variance of the first difference is 5^2 of the altimeter and 9 of the snapshot: 20 m beside sqrt(34) m are 3.43 deviations, whose
+    /// chance of 6e-4 is a doubt; beside any smaller variance, such as the difference of the two, 5 deviations are none.
+    #[test]
+    fn the_variances_of_altimeter_and_snapshot_add_up() {
+        assert_eq!(Height::default().hear(&baro(120.0, 0.0), &at(0.0, 100.0)), Testimony::Doubts);
+        assert_eq!(Height::default().hear(&baro(119.0, 0.0), &at(0.0, 100.0)), Testimony::Agrees);
+        assert_eq!(Height::default().hear(&baro(132.0, 0.0), &at(0.0, 100.0)), Testimony::Contradicts);
+    }
+
     #[test]
     fn numbers_that_are_none_agree_with_nothing() {
         let mut height = Height::default();
