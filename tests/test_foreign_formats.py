@@ -87,6 +87,8 @@ LOGS = {
     "hemisphere": b"".join(hemisphere(1, junk(52)) for _ in range(LONG)),
     "gnss-logger": (ANDROID + FIXES).encode(),
     "gnss-logger, without its head": FIXES.encode(),
+    "igc": b"AXCS001\r\nHFDTE150722\r\n" + b"B1101355206343N00006198WA0058700558\r\n" * 9,
+    "gpx": b'<?xml version="1.0"?>\n<gpx><trk><trkpt lat="48" lon="2"/></trk></gpx>',
 }
 
 
@@ -106,7 +108,7 @@ def test_a_foreign_log_is_refused_by_its_name(tmp_path: Path, kind: str) -> None
 
 def test_a_foreign_log_that_begins_in_a_frame_is_known_too() -> None:
     for kind, log in LOGS.items():
-        if not kind.startswith("gnss"):
+        if not kind.startswith(("gnss", "igc", "gpx")):
             assert formats.of(log[17:]).id == kind.split(",")[0], kind
 
 

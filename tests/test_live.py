@@ -305,11 +305,11 @@ def test_a_variance_below_zero_is_none_whatever_deviation_stands_beside_it(tmp_p
     assert lived_lines(tmp_path / "beside", cov_ee_m2=-64.0, sigma_m=5.0) == ({"invalid_input"}, {"unavailable"})
 
 
-@pytest.mark.parametrize("variance_m2", [0.0, 1e-320, -1e-320, 1.9e-18])
-def test_a_variance_below_the_last_bit_of_a_position_is_zero(variance_m2: float, tmp_path: Path) -> None:
+@pytest.mark.parametrize("variance_m2", [0.0, 1e-320, -1e-320, 0.99e-8])
+def test_a_variance_below_a_tenth_of_a_millimetre_squared_is_zero(variance_m2: float, tmp_path: Path) -> None:
     """In the plane it bounds nothing."""
     assert lived_lines(tmp_path, cov_ee_m2=variance_m2) == ({"not_available"}, {"unavailable"})
-    assert lived_lines(tmp_path / "above", cov_ee_m2=2.1e-18)[0] == {"ok"}
+    assert lived_lines(tmp_path / "above", cov_ee_m2=1.01e-8)[0] == {"ok"}
 
 
 def test_a_journal_that_was_cut_says_how_much_is_not_judged(tmp_path: Path) -> None:

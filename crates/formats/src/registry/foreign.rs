@@ -70,6 +70,28 @@ pub(super) fn gnss_logger(file: &File<'_>) -> bool {
     described || fix || matches!(first, [b'R', b'a', b'w', b',', b'0'..=b'9', ..])
 }
 
+/// The record of a glider's flight: its maker first, its date in the head.
+pub(super) fn igc(file: &File<'_>) -> bool {
+    let begin = file.content.get(..file.content.len().min(1 << 13)).unwrap_or_default();
+    let maker = matches!(begin, [b'A', rest @ ..] if rest.iter().take(3).filter(|byte| byte.is_ascii_alphanumeric()).count() == 3);
+    maker && begin.split(|byte| *byte == b'\n').any(|line| line.starts_with(b"HFDTE"))
+}
+
+pub(super) fn gpx(file: &File<'_>) -> bool {
+    element(file, b"<gpx")
+}
+
+pub(super) fn kml(file: &File<'_>) -> bool {
+    element(file, b"<kml")
+}
+
+/// Whether a text begins with a mark-up and has this element near its begin.
+fn element(file: &File<'_>, name: &[u8]) -> bool {
+    let begin = file.content.get(..file.content.len().min(1 << 12)).unwrap_or_default();
+    let text = begin.strip_prefix(b"\xef\xbb\xbf").unwrap_or(begin).trim_ascii_start();
+    text.starts_with(b"<") && memchr::memmem::find(text, name).is_some()
+}
+
 /// Whether packets between 10 and 10 03 stand one behind the other, each of which is sound without its frame and its doubled bytes.
 fn packets(file: &File<'_>, sound: impl Fn(&[u8]) -> bool) -> bool {
     let start = file.content.get(..file.content.len().min(LONGEST * FRAMES)).unwrap_or_default();

@@ -96,6 +96,8 @@ const fn refused(
     Format { id, title, holds: &[Holds::Nothing], sign, recognises, instead: Some(instead) }
 }
 
+const MAKE_TABLE: &str = "make a table of it: UTC time, latitude and longitude in degrees, height, and the accuracy where it states one";
+
 /// Every format, in the order in which they are tried.
 pub const FORMATS: &[Format] = &[
     read("gzip", "gzip", &[Holds::Packed], "1F 8B", |f| f.content.starts_with(b"\x1f\x8b")),
@@ -130,6 +132,9 @@ pub const FORMATS: &[Format] = &[
         foreign::gnss_logger,
         "log NMEA beside it and take that file, convert the measurements to RINEX, or make a table of its Fix lines",
     ),
+    refused("igc", "flight log of a glider (IGC)", "A and a maker, and a line HFDTE", foreign::igc, MAKE_TABLE),
+    refused("gpx", "GPX", "<gpx", foreign::gpx, MAKE_TABLE),
+    refused("kml", "KML", "<kml", foreign::kml, MAKE_TABLE),
     refused("sirf", "log of a SiRF receiver", "three frames one behind the other: A0 A2, length, sum, B0 B3", foreign::sirf, CONVERT),
     refused("casic", "log in CASIC binary", "three frames one behind the other: BA CE, length, sum", foreign::casic, CONVERT),
     refused(

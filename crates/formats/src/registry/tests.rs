@@ -53,6 +53,10 @@ fn signs_name_their_format() {
         (b"JP003RLO\r\n~~005\x01\x02\x03\x04\x05PV002ab\n".to_vec(), "", "javad"),
         (b"# Raw,utcTimeMillis,TimeNanos\nRaw,1,2\n".to_vec(), "gnss_log.txt", "gnss-logger"),
         (b"Fix,GPS,52.1,0.1,86,1,3.5,0,1741096809398\n".to_vec(), "", "gnss-logger"),
+        (b"AXCS001\r\nHFDTE150722\r\nB1101355206343N00006198WA0058700558\r\n".to_vec(), "", "igc"),
+        (b"AXCS001\r\nHFPLTPILOT\r\n".to_vec(), "", "csv"),
+        (b"<?xml version=\"1.0\"?>\n<gpx version=\"1.1\"><trk/></gpx>".to_vec(), "", "gpx"),
+        (b"<?xml version=\"1.0\"?>\n<kml><Document/></kml>".to_vec(), "", "kml"),
         // Their first bytes alone, in the middle of other data, make no log of a receiver.
         (b"\x00\x01$@\x00\x00\x00\x4f\x60\x00\xb5\x62\x01\x07\x5c\x00".to_vec(), "", "csv"),
         (b"\xa0\xa2\x00\x02\x01\x02\x00\x03\xb0\xb3".to_vec(), "", "sirf"),

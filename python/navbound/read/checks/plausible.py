@@ -58,7 +58,7 @@ _UNDATED = -(2**63)
 
 _REASON_ID = [None, "position_held", "position_stale", "position_jump", "position_not_settled", "position_late"]
 """What the core found, by its codes."""
-_JUMP = _REASON_ID.index("position_jump")
+_HELD, _STALE, _JUMP = (_REASON_ID.index(id_) for id_ in ("position_held", "position_stale", "position_jump"))
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,8 @@ class Checker:
         self._tracks: dict[str, _core.PlausibleTrack] = {}
         self._n = np.zeros(len(_REASON_ID), dtype=np.int64)
         self._n_steps = self._n_fast = self._n_dated = self._n_rows = self._n_doubted = self._n_twice = 0
-        self._largest = self._fastest = 0.0
+        self._largest = self._fastest = self._oldest_s = self._furthest_m = 0.0
+        self._n_old = 0
 
     def see(self, epochs: pl.DataFrame) -> None:
         """See the next part of one track that goes on in other pieces."""
@@ -157,7 +158,8 @@ class Checker:
             track, reports = self._track(group), _reports(group)
             if not seen:
                 track.see(reports)
-            judged.append(track.judge(reports, _speeds_after(name, after)))
+            found = track.judge(reports, _speeds_after(name, after))
+            judged.append(found | {"finding": self._dated(found["finding"], reports)})
             # Rows are in the order of tracks: only the last one may go on.
             self._tracks = {name: track} | {k: v for k, v in self._tracks.items() if k > name}
         names = ("finding", "step_m", "too_fast_mps", "speed_doubted")
@@ -168,6 +170,20 @@ class Checker:
             self._n_twice += int((jumps & (code != _JUMP)).sum())
         self._count(code, step, fast, columns)
         return _marked(epochs, code)
+
+    def _dated(self, code: NDArray[np.uint8], reports: _Reports) -> NDArray[np.uint8]:
+        """A position that is said to be old is as one that is held as long."""
+        time_ns, fixed_ns, _, _, speed_mps = reports
+        dated = fixed_ns != _UNDATED
+        age_s = np.where(dated, (time_ns - np.where(dated, fixed_ns, time_ns)) * 1e-9, 0.0)
+        old = np.where(age_s > self._limits.stale_after_s, _STALE, np.where(age_s > self._limits.fix_latency_s, _HELD, 0))
+        out = np.where(code <= _STALE, np.maximum(code, old), code).astype(np.uint8)
+        self._n_old += int((out != code).sum())
+        young = age_s[out == 0]
+        if young.size:
+            self._oldest_s = max(self._oldest_s, float(young.max()))
+            self._furthest_m = max(self._furthest_m, float(np.nan_to_num(young * speed_mps[out == 0]).max()))
+        return out
 
     def _track(self, group: pl.DataFrame) -> _core.PlausibleTrack:
         name = group["track"][0]
@@ -205,6 +221,13 @@ class Checker:
             words += (
                 f" {self._n_dated} of {self._n_rows} rows say when their position was valid; between those, steps are judged by that time."
             )
+            if self._n_old:
+                words += f" {self._n_old} positions that are older than {limits.fix_latency_s:g} s count as held."
+            if self._oldest_s > 0.0:
+                words += (
+                    f" The others are up to {self._oldest_s:.2g} s old, in which the aircraft moved up to {self._furthest_m:.0f} m: a "
+                    "bound is of the time of the position, a truth of the time of the row."
+                )
         repeated, stale, jump, unsettled, late = (int(k) for k in n[1:])
         return Plausibility(
             repeated, stale, jump + self._n_twice, unsettled, late, self._n_fast, fastest, self._n_doubted, n_steps, largest, words

@@ -74,15 +74,39 @@ NO_ALERT = _words(
 
 _ALARMS = _words("spoof spoofed spoofing jam jammed jamming anomaly error err fault failure alarm alert warning")
 _ALARM_FLAGS = (
-    {f"{word}_{what}" for word in (*_ALARMS, "nav_error", "gps_error", "gnss_error") for what in ("flag", "detected", "active", "raised", "set")}
+    {
+        f"{word}_{what}"
+        for word in (*_ALARMS, "nav_error", "gps_error", "gnss_error")
+        for what in ("flag", "detected", "active", "raised", "set")
+    }
     | _ALARMS - {"error", "err"}
     | {f"{level}_exceeded" for level in ("hal", "hil", "hpl", "hul", "pl", "xpl", "al", "limit", "alert_limit")}
-    | {f"{whose}_{word}" for word in _ALARMS - {"error", "err"} for whose in ("gps", "gnss", "nav", "pos", "position", "is", "integrity", "raim")}
+    | {
+        f"{whose}_{word}"
+        for word in _ALARMS - {"error", "err"}
+        for whose in ("gps", "gnss", "nav", "pos", "position", "is", "integrity", "raim")
+    }
 )
 """Names of flags that are raised against a position. Provenance: ours."""
 
 NO_INTEGRITY = _words("n no none off false")
 """Words that state that there is no integrity or no monitor, where the column is named by what it has."""
+
+AGE = Kind(
+    "invalid",
+    _words(
+        "age_s position_age position_age_s pos_age pos_age_s fix_age fix_age_s data_age_s seen_pos seconds_since_update "
+        "seconds_since_last_update seconds_since_fix time_since_update_s time_since_fix_s"
+    ),
+    frozenset(),
+    frozenset(),
+    above=STALE_AFTER_S,
+)
+"""The age of a position, in seconds; it dates the position, too."""
+
+_FOREIGN = _words("mlat tisb tis_b tisb_icao tisb_trackfile tisb_other adsr_icao adsr_other adsr")
+_OWN = _words("adsb ads_b adsb_icao adsb_icao_nt adsb_other flarm gps gnss")
+"""Sources of positions, as readsb and others write them. By the decoder of live records, too, `adsb_` alone is the aircraft's own."""
 
 KINDS: tuple[Kind, ...] = (
     Kind(
@@ -159,16 +183,11 @@ KINDS: tuple[Kind, ...] = (
     ),
     # The granular tables of flight trackers: P where there is a position.
     Kind("invalid", _words("no_position no_pos without_position"), _YES | {"n"}, _words("p 0 false no"), other_against=True),
-    Kind(
-        "invalid",
-        _words(
-            "age_s position_age position_age_s pos_age pos_age_s fix_age fix_age_s data_age_s seen_pos seconds_since_update "
-            "seconds_since_last_update seconds_since_fix time_since_update_s time_since_fix_s"
-        ),
-        frozenset(),
-        frozenset(),
-        above=STALE_AFTER_S,
-    ),
+    AGE,
+    # How a position came: what others computed or repeat is none that the aircraft claims anything of.
+    Kind("invalid", _words("type source source_type"), _FOREIGN, _OWN),
+    # As numbers of OpenSky: ADS-B, ASTERIX, MLAT, FLARM.
+    Kind("invalid", _words("position_source pos_source"), _FOREIGN | _words("asterix 1 2"), _OWN | _words("0 3")),
     # Version 0 transponders: 0 is an unknown integrity.
     Kind("invalid", _words("nuc_p nucp nuc"), _words("0"), frozenset("123456789")),
     # The rule of solved positions; receivers write 99.99 where they know none.

@@ -97,9 +97,13 @@ def _q(name: str, low: float, high: float, **aliases: str) -> Quantity:
 
 _INF = math.inf
 
+_WHO = (
+    "icao24 icao mmsi track_id flight_id aircraft_id vehicle_id hex icao_address icao_addr icaoaddress mode_s modes address registration "
+    "reg tail tail_number"
+)
 _SATELLITES = (
-    "ns nsv num_sv n_sats nsats numsat num_sat numsats num_sats satellites n_satellites num_satellites sats svs n_used sats_used svs_used sv_used "
-    "satellites_used used_sats used_svs used_satellites n_sats_used n_sv_used num_sats_used num_sv_used num_satellites_used"
+    "ns nsv num_sv n_sats nsats numsat num_sat numsats num_sats satellites n_satellites num_satellites sats svs n_used sats_used svs_used "
+    "sv_used satellites_used used_sats used_svs used_satellites n_sats_used n_sv_used num_sats_used num_sv_used num_satellites_used"
 )
 """Names of the number of satellites of a position; one of those in view is none the smaller."""
 
@@ -154,7 +158,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     # What cannot be a setting is judged where it is used: the position beside it is none the worse.
     _q("setting_hpa", -_INF, _INF, hpa="nav_qnh qnh qnh_hpa altimeter_setting_hpa"),
     _q("n_sv", 0.0, 255.0, **{"1": _SATELLITES}),
-    _q("track", 0.0, 0.0, text="icao24 icao mmsi track_id flight_id aircraft_id vehicle_id"),
+    _q("track", 0.0, 0.0, text=_WHO),
     _q("callsign", 0.0, 0.0, text="callsign flight"),
     _q("hpl_m", 0.0, 1e9, m="hpl horizontal_protection_level"),
     _q("vpl_m", 0.0, 1e9, m="vpl vertical_protection_level"),
@@ -203,7 +207,7 @@ TIME_NAMES: dict[str, str] = {
     "time_ns": "gps_ns", "gps_time_ns": "gps_ns", "gps_time_s": "gps_s", "gps_s": "gps_s",
     "gps_week": "gps_week", "week": "gps_week", "gps_tow": "gps_tow_s", "gps_tow_s": "gps_tow_s", "tow_s": "gps_tow_s", "tow": "gps_tow_s",
     "timestamp": "utc", "time": "utc", "utc": "utc", "datetime": "utc", "time_utc": "utc", "utc_time": "utc",
-    "unix_time": "utc_s", "unix_time_s": "utc_s", "time_s": "utc_s", "timestamp_ms": "utc_ms",
+    "now": "utc_s", "unix_time": "utc_s", "unix_time_s": "utc_s", "time_s": "utc_s", "timestamp_ms": "utc_ms",
     "unixtimemillis": "utc_ms", "unix_time_millis": "utc_ms", "utctimemillis": "utc_ms", "time_ms": "utc_ms",
     "time_utc_usec": "utc_us", "utc_us": "utc_us", "timestamp_us": "utc_us", "time_us": "utc_us", "timeus": "utc_us",
 }  # fmt: skip

@@ -249,9 +249,7 @@ def _json(source: Source) -> Table:
     # A record is an object; a row of a table of columns, or of a trace, is some twenty fields between commas.
     require_free(source, max(source.content.count(b"{"), source.content.count(b",") // 20))
     try:
-        data = json.loads(source.text(), object_pairs_hook=lambda pairs: _unrepeated(source, pairs))
-    except json.JSONDecodeError as e:
-        raise FormatError(source.path, f"not JSON: {e.msg}", e.lineno) from e
+        data = _json_of(source)
     except RecursionError as e:
         raise FormatError(source.path, "not a table: JSON nested too deeply") from e
     rejections = Rejections(source.path, "record")
@@ -272,6 +270,25 @@ def _json(source: Source) -> Table:
         )
     frame = pl.DataFrame({name: _series(name, values) for name, values in columns.items()})
     return Table(_counted(frame), rejections, frame.height)
+
+
+def _json_of(source: Source) -> Any:
+    """One value, or an object a line."""
+    decoder = json.JSONDecoder(object_pairs_hook=lambda pairs: _unrepeated(source, pairs))
+    text = source.text()
+    try:
+        return decoder.decode(text)
+    except json.JSONDecodeError as e:
+        if e.msg != "Extra data" or not text.lstrip().startswith("{"):
+            raise FormatError(source.path, f"not JSON: {e.msg}", e.lineno) from e
+    records = list[Any]()
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.strip():
+            try:
+                records.append(decoder.decode(line))
+            except json.JSONDecodeError as e:
+                raise FormatError(source.path, f"not an object of JSON on each line: {e.msg}", number) from e
+    return records
 
 
 def _unrepeated(source: Source, pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -38,6 +38,8 @@ _BAD, _EXAMPLE = "__bad", "__example"
 _RAW = "__raw "
 _MISSING = r"(?i)^([+-]?nan(\(\w*\))?)?$"
 
+_AGE, _OLDEST_S = "__age_s", 1e6
+"""Column of the age that a row states of its position, and the largest that dates it. [s] Provenance: ours."""
 _AHEAD_NS = 1_000_000_000
 """How much later than its row a position may be said to be: both may be rounded."""
 
@@ -94,6 +96,9 @@ class Values:
         self._path, self._stem, self._mapping, self._required = path, stem, mapping, required
         self._dated = position_time(mapping.unused)
         self._nowhere = Nowhere()
+        self._callsign: str | None = None
+        self._callsigns = dict[str, None]()
+        self._last_line = 0
         self._facts, self._facts_dated = list[TimeFacts](), list[TimeFacts]()
         self._dtypes: dict[str, pl.DataType] = {}
         self._n_unknown = 0
@@ -135,7 +140,7 @@ class Values:
             self.tally.add(
                 LEVELS + place, f"{heading}: {levels.REASON}", where.height, where[LINE][0], str(where[heading][0]), kind="quiet"
             )
-        part = self._with_unread(part, frame)
+        part = self._with_age(self._with_unread(self._with_track(part, frame), frame), frame)
         part = _with_speed(part).with_columns(*_reasons(frame, against), *self._raw(frame))
         for name in POSITION:
             if name in part.columns:
@@ -159,6 +164,30 @@ class Values:
             if values:
                 part = part.with_columns(pl.DataFrame(values).max_horizontal().alias(quantity))
         return part
+
+    def _with_track(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
+        """Where no column names the aircraft, its callsign does: what one aircraft states is none of the next one's."""
+        if "track" in part.columns or "callsign" not in part.columns or frame.is_empty():
+            return part
+        # The rows come once to be timed and once to be read.
+        carried = None if frame[LINE][0] <= self._last_line else self._callsign
+        self._last_line = int(frame[LINE][-1])
+        named = part["callsign"].replace("", None)
+        known = pl.concat([pl.Series("callsign", [carried], pl.String), named]).fill_null(strategy="forward")[1:]
+        if carried is None:
+            known = known.fill_null(strategy="backward")
+        self._callsign = known[-1]
+        self._callsigns.update(dict.fromkeys(named.drop_nulls().unique(maintain_order=True)))
+        return part.with_columns(known.alias("track"))
+
+    def _with_age(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
+        """The age that a row states of its position, where no column states the time of the position."""
+        ages = [name for name, kind in self._mapping.statements if kind is statements.AGE and not _no_field(frame.schema[name])]
+        if self._dated is not None or not ages:
+            return part
+        stated_s = [frame[name].cast(pl.Float64, strict=False).fill_nan(None).alias(name) for name in ages]
+        oldest_s = pl.DataFrame(stated_s).max_horizontal()
+        return part.with_columns(pl.select(pl.when(oldest_s.is_between(0.0, _OLDEST_S)).then(oldest_s)).to_series().alias(_AGE))
 
     def _count_uncompared(self, frame: pl.DataFrame, compared: Mapping[str, pl.Series]) -> None:
         """Count the texts of columns that are compared as lengths; an empty field states nothing."""
@@ -286,6 +315,8 @@ class Values:
             )
         if tuple(self._required) == POSITION and self._mapping.unused:
             self.notes.append(f"{name}: columns not used: {_few(self._mapping.unused)}")
+        if len(self._callsigns) > 1:
+            self.notes.append(f"{name}: no column names the aircraft; each of {len(self._callsigns)} callsigns is a track of its own")
         self._look_like_radians()
         self._look_like_feet()
         self._unit = self._understood(self._mapping.times, self._facts)
@@ -327,6 +358,9 @@ class Values:
             pl.when(pl.col(_BAD).is_null()).then(_text(raw[name], timeless.is_not_null())).otherwise(pl.col(_EXAMPLE)).alias(_EXAMPLE),
         )
         out = self._positions_dated(out, raw).drop(pl.selectors.starts_with(_RAW))
+        if _AGE in out.columns:
+            valid_ns = pl.col("time_ns") - (pl.col(_AGE) * 1e9).round().cast(pl.Int64)
+            out = out.with_columns(valid_ns.alias(POSITION_TIME)).drop(_AGE)
         out = out.with_columns(self._track(out))
         without = out.filter(pl.col(_BAD).is_not_null())
         for (reason_text,), group in without.group_by(_BAD, maintain_order=True):

@@ -47,11 +47,13 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
         raise without_epochs(observations)
     require_same_time(observations, navigation)
     solution = solving.solve(observations, navigation, signals="auto", systems="GEC", track=source.stem, keep_ranges=True)
+    absent = [f"it holds no ranges of {gnss.SYSTEMS[s]}" for s in solving.systems or "" if not observations.codes.get(s)]
     without = solution.epochs.filter(pl.col("est_lat_rad").is_null())
     repeats = separate(solution.epochs.filter(pl.col("est_lat_rad").is_not_null()).sort("time_ns", maintain_order=True))
     known = repeats.epochs
     if known.is_empty():
-        raise FormatError(source.path, f"no position could be solved; satellites not used: {unused_words(solution.unused)}")
+        why = [*absent, f"satellites not used: {unused_words(solution.unused)}"]
+        raise FormatError(source.path, f"no position could be solved; {'; '.join(why)}")
     path = str(source.path)
     rejected = [
         Rejection(file=path, reason=f"no position: {REASONS[id_].words}", count=count, first_line=None, example=f"{count} epochs")
@@ -67,7 +69,8 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
         if not rows.is_empty()
     ]
     rejected += of_observations(observations)
-    notes = [f"{source.path.name}: {name}: {words}" for name, words in solution.models.items()]
+    notes = [f"{source.path.name}: {words}, which was to be used" for words in absent]
+    notes += [f"{source.path.name}: {name}: {words}" for name, words in solution.models.items()]
     doubts = contradicting(
         solution, lambda systems: replace(solving, systems=systems).solve(observations, navigation, signals="auto", systems=systems)
     )

@@ -1,0 +1,134 @@
+"""Whose position a row states and when it was valid: one aircraft's accuracy is none of another's, and an old position is none of now."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import navbound
+from navbound import FormatError
+from navbound.run.directory import Run
+
+N = 120
+SPEED_MPS = 250.0
+DEG_PER_M = 1.0 / 111_195.0
+
+
+def rows(n: int = N, *, begin_s: int = 0, **added: object) -> list[dict[str, object]]:
+    """A flight to the north at 250 m/s, one row a second, that states NACp 10; a callable is of the second."""
+    return [
+        {
+            "time_s": 1_700_000_000 + k,
+            "lat_deg": 48.0 + k * SPEED_MPS * DEG_PER_M,
+            "lon_deg": 2.0,
+            "ground_speed_mps": SPEED_MPS,
+            "nac_p": 10,
+        }
+        | {name: value(k) if callable(value) else value for name, value in added.items()}
+        for k in range(begin_s, begin_s + n)
+    ]
+
+
+def analyzed(tmp_path: Path, table: list[dict[str, object]]) -> Run:
+    path = tmp_path / "a.json"
+    path.write_text(json.dumps(table), encoding="utf-8")
+    return navbound.analyze(path)
+
+
+def reasons(run: Run) -> set[str | None]:
+    return set(run.epochs["reason_id"].to_list())
+
+
+@pytest.mark.parametrize(
+    ("age_s", "reason", "verdict"),
+    [(0.5, None, "inside"), (1.0, None, "inside"), (1.5, "position_held", "nothing_judged"), (5.0, "position_stale", "nothing_judged")],
+)
+@pytest.mark.parametrize("name", ["last_position", "lastposupdate", "time_position"])
+def test_a_position_that_is_said_to_be_old_is_as_one_that_is_held(
+    tmp_path: Path, name: str, age_s: float, reason: str | None, verdict: str
+) -> None:
+    run = analyzed(tmp_path, rows(**{name: lambda k: 1_700_000_000 + k - age_s}))
+    assert (reasons(run), run.summary.verdict.id) == ({reason}, verdict)
+
+
+@pytest.mark.parametrize(("age_s", "reason"), [(0.5, None), (1.0, None), (1.9, "position_held"), (2.5, "reported")])
+@pytest.mark.parametrize("name", ["seen_pos", "fix_age", "age_s"])
+def test_an_age_of_a_position_dates_it(tmp_path: Path, name: str, age_s: float, reason: str | None) -> None:
+    assert reasons(analyzed(tmp_path, rows(**{name: age_s}))) == {reason}
+
+
+def test_the_way_in_the_age_of_a_position_is_said(tmp_path: Path) -> None:
+    """0.8 s at 250 m/s are 200 m."""
+    (words,) = (a for a in analyzed(tmp_path, rows(seen_pos=0.8)).summary.assumptions if a.startswith("Plausibility"))
+    assert "up to 0.8 s old, in which the aircraft moved up to 200 m" in words
+
+
+def test_of_two_callsigns_each_is_an_aircraft(tmp_path: Path) -> None:
+    first, second = rows(callsign="DLH1"), rows(begin_s=N, nac_p=None, callsign="AFR2")
+    run = analyzed(tmp_path, [*first, *second])
+    assert run.epochs["track"].unique().sort().to_list() == ["AFR2", "DLH1"]
+    of_second = run.epochs.filter(run.epochs["track"] == "AFR2")
+    assert set(of_second["status"]) == {"not_available"}
+    assert run.summary.verdict.id == "not_shown"
+    assert any("each of 2 callsigns is a track of its own" in a for a in run.summary.assumptions)
+
+
+def test_a_callsign_that_comes_later_or_is_absent_for_a_while_is_of_one_track(tmp_path: Path) -> None:
+    run = analyzed(tmp_path, rows(callsign=lambda k: "DLH1" if 20 <= k < 40 or k > 90 else None))
+    assert run.epochs["track"].unique().to_list() == ["DLH1"]
+    assert run.summary.verdict.id == "inside"
+    table = "\n".join([",".join(rows(1, callsign="")[0]), *(",".join("" if v is None else str(v) for v in row.values()) for row in
+                       rows(callsign=lambda k: "DLH1" if 20 <= k < 40 or k > 90 else None))])  # fmt: skip
+    (tmp_path / "a.csv").write_text(table + "\n", encoding="utf-8")
+    for piece_rows in (20, 30, 1000):
+        assert navbound.analyze(tmp_path / "a.csv", piece_rows=piece_rows).epochs["track"].unique().to_list() == ["DLH1"]
+
+
+@pytest.mark.parametrize("name", ["hex", "registration", "mode_s", "icao_address", "ModeS", "Tail Number"])
+def test_a_column_that_names_the_aircraft_divides_tracks(tmp_path: Path, name: str) -> None:
+    run = analyzed(tmp_path, [*rows(**{name: "3c6444"}), *rows(begin_s=N, nac_p=None, **{name: "39bda1"})])
+    assert run.epochs["track"].unique().sort().to_list() == ["39bda1", "3c6444"]
+    assert run.summary.verdict.id == "not_shown"
+
+
+@pytest.mark.parametrize(
+    ("name", "source", "own"),
+    [
+        ("type", "adsb_icao", True),
+        ("type", "mlat", False),
+        ("type", "tisb_trackfile", False),
+        ("type", "adsr_icao", False),
+        ("source", "MLAT", False),
+        ("position_source", "0", True),
+        ("position_source", "2", False),
+    ],
+)
+def test_a_position_that_others_computed_is_none_of_the_aircraft(tmp_path: Path, name: str, source: str, own: bool) -> None:
+    assert reasons(analyzed(tmp_path, rows(**{name: source}))) == {None if own else "reported"}
+
+
+def test_a_type_of_aircraft_says_nothing_against_a_position(tmp_path: Path) -> None:
+    run = analyzed(tmp_path, rows(type="A320"))
+    assert run.summary.verdict.id == "inside"
+    assert run.summary.verdict.unread == ["type (a320)"]
+
+
+def test_an_object_of_json_a_line_is_a_row(tmp_path: Path) -> None:
+    path = tmp_path / "a.json"
+    path.write_text("\n".join(json.dumps(row) for row in rows()) + "\n", encoding="utf-8")
+    run = navbound.analyze(path)
+    assert (run.epochs.height, run.summary.verdict.id) == (N, "inside")
+    columns = ["time_ns", "est_lat_rad", "est_lon_rad", "cov_ee_m2"]
+    assert run.epochs.select(columns).equals(analyzed(tmp_path, rows()).epochs.select(columns))
+
+
+def test_a_line_that_is_no_object_of_json_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "a.json"
+    lines = [json.dumps(row) for row in rows()]
+    lines[7] = lines[7][:30]
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    with pytest.raises(FormatError, match="not an object of JSON on each line") as refused:
+        navbound.analyze(path)
+    assert refused.value.line == 8
