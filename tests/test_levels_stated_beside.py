@@ -65,7 +65,7 @@ def test_a_statement_against_the_position_leaves_no_level(column: str, value: ob
 def test_what_is_not_understood_is_named_in_the_verdict(column: str, value: object, tmp_path: Path) -> None:
     of = verdict(tmp_path, column, value)
     assert of.unread == [column]
-    assert f"Not understood and not used, though the names speak of accuracy or integrity: {column}." in of.words
+    assert f"Not understood and not used, though the names speak of accuracy, of integrity or of another position: {column}." in of.words
 
 
 def test_an_error_above_its_level_counts_at_any_dilution(tmp_path: Path) -> None:

@@ -181,7 +181,9 @@ def test_an_alert_under_any_of_its_names_is_one(tmp_path: Path, name: str, fine:
 def test_what_is_not_understood_is_named(tmp_path: Path, name: str, value: str, named: str) -> None:
     verdict = stating(tmp_path, name, value, value)
     assert verdict.unread == [named]
-    assert f"Not understood and not used, though the names speak of accuracy or integrity: {named}." in verdict.words
+    assert (
+        f"Not understood and not used, though the names speak of accuracy, of integrity or of another position: {named}." in verdict.words
+    )
 
 
 def test_several_statements_count_together(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import polars as pl
 import pytest
 
 import navbound
@@ -132,3 +133,71 @@ def test_a_line_that_is_no_object_of_json_is_named(tmp_path: Path) -> None:
     with pytest.raises(FormatError, match="not an object of JSON on each line") as refused:
         navbound.analyze(path)
     assert refused.value.line == 8
+
+
+def led_off(k: int) -> float:
+    """A longitude that goes to the east by 15 m a second."""
+    return 2.0 + k * 15.0 * DEG_PER_M / 0.669
+
+
+@pytest.mark.parametrize("direction", [{"track_deg": 0.0}, {"vn": SPEED_MPS, "ve": 0.0}])
+@pytest.mark.parametrize(("lon_deg", "doubted"), [(led_off, False), (lambda k: led_off(5 * k), True), (lambda _: 2.0, False)])
+def test_positions_that_end_elsewhere_than_speed_and_track_lead_are_doubted(
+    tmp_path: Path, direction: dict[str, object], lon_deg: object, doubted: bool
+) -> None:
+    """75 m a second aside of 250 m/s are 4500 m a minute, where 5 % and 3 m/s leave 930 m; 15 m a second are 900 m."""
+    verdict = analyzed(tmp_path, rows(300, lon_deg=lon_deg, **direction)).summary.verdict
+    assert any("positions end elsewhere" in each for each in verdict.position_doubts) == doubted
+    assert (verdict.id == "inside") != doubted
+
+
+def test_of_two_speeds_the_larger_counts(tmp_path: Path) -> None:
+    """A position that stands with noise under a speed of 0 beside velocities of 250 m/s."""
+    noise = (0.0, 1.3, -0.9, 0.4, -1.1)
+    stand = rows(200, lat_deg=lambda k: 48.0 + noise[k % 5] * DEG_PER_M, ground_speed_mps=0.0)
+    assert analyzed(tmp_path, stand).summary.verdict.id == "inside"
+    for moving in ({"vn": SPEED_MPS, "ve": 0.0}, {"gs_kt": 486.0}, {"groundspeed": 486.0}):
+        verdict = analyzed(tmp_path, [row | moving for row in stand]).summary.verdict
+        assert verdict.id != "inside", moving
+
+
+@pytest.mark.parametrize(("off_deg", "doubted"), [(0.0, False), (0.0005, False), (0.02, True)])
+@pytest.mark.parametrize("name", ["latitude", "lat", "Latitude"])
+def test_two_columns_of_one_latitude_must_agree(tmp_path: Path, name: str, off_deg: float, doubted: bool) -> None:
+    """0.0005 degrees are 56 m, 0.02 degrees 2.2 km."""
+    table = [row | {name: row["lat_deg"] + off_deg} for row in rows()]
+    verdict = analyzed(tmp_path, table).summary.verdict
+    assert any("two columns of one quantity" in each for each in verdict.position_doubts) == doubted
+    assert verdict.id == ("not_shown" if doubted else "inside")
+    path = tmp_path / "a.json"
+    assert navbound.analyze(path, columns={"est_lat_rad": "lat_deg:deg"}).summary.verdict.id == "inside"
+
+
+@pytest.mark.parametrize(("later_s", "doubted"), [(0.0, False), (1.5, False), (1000.0, True)])
+def test_two_columns_of_one_time_must_agree(tmp_path: Path, later_s: float, doubted: bool) -> None:
+    table = [row | {"timestamp": row["time_s"] + later_s} for row in rows()]
+    verdict = analyzed(tmp_path, table).summary.verdict
+    assert any("two columns of time" in each for each in verdict.position_doubts) == doubted
+    assert verdict.id == ("not_shown" if doubted else "inside")
+    assert navbound.analyze(tmp_path / "a.json", columns={"time": "time_s:utc_s"}).summary.verdict.id == "inside"
+
+
+def test_a_clock_since_the_start_is_no_second_time(tmp_path: Path) -> None:
+    assert analyzed(tmp_path, [row | {"time_us": 1_000_000 * k} for k, row in enumerate(rows())]).summary.verdict.id == "inside"
+
+
+@pytest.mark.parametrize("name", ["true_lat_deg", "gt_lat", "lat_truth_deg", "ref_lat", "rtk_latitude", "ins_lon", "lat2"])
+def test_another_place_that_nothing_reads_is_named(tmp_path: Path, name: str) -> None:
+    assert analyzed(tmp_path, rows(**{name: 48.1})).summary.verdict.unread == [name]
+
+
+@pytest.mark.parametrize("name", ["dest_lat", "runway_lon", "home_latitude", "wpt_lat"])
+def test_a_place_of_something_else_is_not(tmp_path: Path, name: str) -> None:
+    assert analyzed(tmp_path, rows(**{name: 48.1})).summary.verdict.unread == []
+
+
+def test_a_column_of_durations_is_refused_by_its_name(tmp_path: Path) -> None:
+    table = pl.DataFrame(rows()).with_columns(time_s=pl.duration(seconds=pl.col("time_s")))
+    table.write_parquet(tmp_path / "a.parquet")
+    with pytest.raises(FormatError, match="time_s: holds Duration"):
+        navbound.analyze(tmp_path / "a.parquet")

@@ -1,7 +1,8 @@
-"""Whether positions travel as far as the recording's own speeds say."""
+"""Whether positions travel as far, and whither, as the recording's own speeds and tracks say."""
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,6 +28,9 @@ _OFFSET_MPS = 3.0
 """Difference of speeds that shows nothing: rounding, wind on a filtered track, a slow filter. Provenance: ours. [m/s]"""
 _LONGER, _SHORTER = 1.5, 0.6
 """Ratios of the way of the positions to that of the speeds that show nothing; knots for metres a second are 1.94 and 0.51. Ours. [1]"""
+_ASIDE = 0.05
+"""Share of the way by which the displacement of a window may differ from that of speed and track: a track rounded to two degrees and turns
+between rows leave as much. Provenance: ours. [1]"""
 _DEVIATIONS = 6.0
 """Noise of two positions, in standard deviations of the covariance. Provenance: ours."""
 _LEAST, _LEAST_SHARE = 3, 0.2
@@ -37,8 +41,9 @@ class Speeds:
     """Ways over windows of a minute, of epochs in the order of track and time, in pieces of any length."""
 
     def __init__(self) -> None:
-        self._n = self._n_longer = self._n_shorter = 0
+        self._n = self._n_longer = self._n_shorter = self._n_directed = self._n_aside = 0
         self._worst = (0.0, 0.0)
+        self._worst_aside = (0.0, 0.0)
         self._waiting: pl.DataFrame | None = None
 
     def see(self, epochs: pl.DataFrame) -> None:
@@ -46,7 +51,9 @@ class Speeds:
         speed = _stated(epochs)
         if speed is None or epochs.is_empty():
             return
-        rows = epochs.select("track", "time_ns", "est_lat_rad", "est_lon_rad", _speed=speed, _sigma=_sigma_m(epochs))
+        rows = epochs.select(
+            "track", "time_ns", "est_lat_rad", "est_lon_rad", _speed=speed, _sigma=_sigma_m(epochs), _whither=_whither(epochs)
+        )
         rows = rows if self._waiting is None else pl.concat([self._waiting, rows])
         rows = rows.with_columns(_window=pl.col("time_ns") // _WINDOW_NS)
         # The last window may go on in the next piece.
@@ -61,6 +68,9 @@ class Speeds:
         step_s, step_m = np.diff(time_s), np.hypot(*east_north_m(place[:-1], place[1:]).T)
         speed, sigma = rows["_speed"].to_numpy(), rows["_sigma"].to_numpy()
         stated_m = 0.5 * (speed[:-1] + speed[1:]) * step_s
+        whither = rows["_whither"].to_numpy()
+        velocity = speed[:, None] * np.column_stack([np.sin(whither), np.cos(whither)])
+        stated_en_m = 0.5 * (velocity[:-1] + velocity[1:]) * step_s[:, None]
         track = rows["track"].rle_id().to_numpy()
         sound = np.isfinite(stated_m) & np.isfinite(step_m) & (step_s > 0) & (step_s <= _LONGEST_STEP_S) & (track[1:] == track[:-1])
         # A step belongs to the window in which it begins.
@@ -71,9 +81,11 @@ class Speeds:
         for first, behind in zip(begins.tolist(), [*begins[1:].tolist(), of.size], strict=True):
             at = slice(first, min(behind, step_s.size))
             if sound[at].all() and step_s[at].sum() >= _WHOLE * _WINDOW_S:
-                apart_m = float(np.hypot(*east_north_m(place[[first]], place[[at.stop]])[0]))
+                apart_en_m = east_north_m(place[[first]], place[[at.stop]])[0]
+                apart_m = float(np.hypot(*apart_en_m))
                 noise_m = float(np.hypot(sigma[first], sigma[at.stop]))
                 legs_m = _legs_m(time_s[first : at.stop + 1], place[first : at.stop + 1])
+                self._compare_directed(float(np.hypot(*(apart_en_m - stated_en_m[at].sum(axis=0)))), float(stated_m[at].sum()), noise_m)
                 self._compare(apart_m, min(float(step_m[at].sum()), legs_m), float(stated_m[at].sum()), noise_m)
 
     def _compare(self, apart_m: float, way_m: float, stated_m: float, sigma_m: float) -> None:
@@ -86,6 +98,14 @@ class Speeds:
         if (longer or shorter) and abs(apart_m - stated_m) > abs(self._worst[0] - self._worst[1]):
             self._worst = (apart_m if longer else way_m, stated_m)
 
+    def _compare_directed(self, aside_m: float, stated_m: float, sigma_m: float) -> None:
+        if not math.isfinite(aside_m):
+            return
+        self._n_directed += 1
+        if aside_m > _ASIDE * stated_m + _OFFSET_MPS * _WINDOW_S + _DEVIATIONS * sigma_m:
+            self._n_aside += 1
+            self._worst_aside = max(self._worst_aside, (aside_m, stated_m))
+
     def doubts(self) -> list[str]:
         """A doubt, where there is one, after the last epochs."""
         if self._waiting is not None:
@@ -93,13 +113,25 @@ class Speeds:
             self._waiting = None
         doubts = []
         for n, word in ((self._n_longer, "further"), (self._n_shorter, "less far")):
-            if 0 < n == self._n or (n >= _LEAST and n >= _LEAST_SHARE * self._n):
+            if _contradicts(n, self._n):
                 way_m, stated_m = self._worst
                 doubts.append(
                     f"The positions travel {word} than the recording's own speeds say in {n} of {self._n} minutes (at worst {way_m:.0f} m "
                     f"for {stated_m:.0f} m): the positions are false, or they or the speeds are in another unit than they are read in"
                 )
+        if not doubts and _contradicts(self._n_aside, self._n_directed):
+            aside_m, stated_m = self._worst_aside
+            doubts.append(
+                f"The positions end elsewhere than the recording's own speeds and tracks lead in {self._n_aside} of {self._n_directed} "
+                f"minutes (at worst {aside_m:.0f} m aside on a way of {stated_m:.0f} m): the positions are led off, or a column, such as "
+                "that of the track, is not what it is read as"
+            )
         return doubts
+
+
+def _contradicts(n: int, of: int) -> bool:
+    """Whether so many windows are enough."""
+    return 0 < n == of or (n >= _LEAST and n >= _LEAST_SHARE * of)
 
 
 def _legs_m(time_s: NDArray[np.float64], place: NDArray[np.float64]) -> float:
@@ -116,6 +148,13 @@ def _stated(epochs: pl.DataFrame) -> pl.Expr | None:
     if {"vel_n_mps", "vel_e_mps"} <= set(epochs.columns):
         return (pl.col("vel_n_mps") ** 2 + pl.col("vel_e_mps") ** 2).sqrt().fill_null(float("nan"))
     return None
+
+
+def _whither(epochs: pl.DataFrame) -> pl.Expr:
+    """Direction of the speed as the recording states it [rad]; NaN where it states none."""
+    if "ground_track_rad" not in epochs.columns:
+        return pl.lit(float("nan"))
+    return pl.col("ground_track_rad").cast(pl.Float64).fill_null(float("nan"))
 
 
 def _sigma_m(epochs: pl.DataFrame) -> pl.Expr:

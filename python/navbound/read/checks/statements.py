@@ -306,10 +306,25 @@ def _speaks_of_distance_from_truth(name: str) -> bool:
     return apart and (of_truth or of_reference)
 
 
+_LATITUDE = _words("lat latitude lon lng longitude")
+_NO_VEHICLE = _NO_TRUTH | _words(
+    "airport origin destination dest departure dep arrival arr home target goal next prev previous start end first last site sensor radar "
+    "beacon antenna cpr centre center cell grid tile offset scale speed vel velocity rate err error sigma std var acc accuracy axis"
+)
+"""Parts of names of a latitude or a longitude, and of one that is none of the vehicle now. Provenance: ours."""
+
+
+def _speaks_of_place(name: str) -> bool:
+    """Whether the name is one of another place of the vehicle: the truth of somebody else, a second receiver."""
+    parts = {part.rstrip("0123456789") for part in _parts(name)}
+    return not _LATITUDE.isdisjoint(parts) and parts.isdisjoint(_NO_VEHICLE)
+
+
 def speaks_of_integrity(name: str) -> bool:
-    """Whether the name of a column that nothing reads, as the file writes it, is one of a statement of integrity, or of a truth."""
+    """Whether the name of a column that nothing reads, is one of a statement of integrity, a truth or another place."""
     parts = _parts_of_lengths(name)
-    return not _SPEAKS.isdisjoint([*parts, *(part.removesuffix("s") for part in parts)]) or _speaks_of_truth(name)
+    spoken = not _SPEAKS.isdisjoint([*parts, *(part.removesuffix("s") for part in parts)])
+    return spoken or _speaks_of_truth(name) or _speaks_of_place(name)
 
 
 def speaks_of_accuracy(name: str) -> bool:

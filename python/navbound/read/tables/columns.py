@@ -265,17 +265,21 @@ class Assignment:
         Columns that nothing is known about.
     statements : list of (str, Kind)
         Columns in which a recorded track states the validity or the integrity of its own positions.
+    again : list of Column
+        Further columns of a position, a speed or a time that is read and that nobody declared: a known name stands twice.
     """
 
     columns: dict[str, Column]
     times: list[Column]
     unused: list[str]
     statements: list[tuple[str, Kind]] = field(default_factory=list)
+    again: list[Column] = field(default_factory=list)
 
     @property
     def unread(self) -> list[str]:
         """Columns that nothing reads, though their names speak of integrity; so does a second column of one accuracy."""
-        plain = {name: _plain(name)[0] for name in self.unused}
+        compared = {column.name for column in self.again}
+        plain = {name: _plain(name)[0] for name in self.unused if name not in compared}
         transponders = bool(TRANSPONDER & set(plain.values()))
         speaks = {name: speaks_of_integrity(name) or each in _accuracies_by_alias() for name, each in plain.items()}
         return [name for name, each in plain.items() if speaks[name] and not (transponders and each == "alert")]
@@ -392,7 +396,23 @@ def assign(
     kinds |= {columns[name].name: kind_of(name) for name in ("mode",) if name in columns}
     statements = [(name, kind) for name, kind in kinds.items() if kind is not None]
     stating = {name for name, _ in statements}
-    return Assignment(columns, times, [n for n in free if n not in stating], statements)
+    again = _again(columns, times, {*(declared or {}), *beside}, [n for n in free if n not in stating], path)
+    return Assignment(columns, times, [n for n in free if n not in stating], statements, again)
+
+
+_COMPARED = ("est_lat_rad", "est_lon_rad", "ground_speed_mps")
+"""Quantities of which further columns are compared with the one that is read."""
+
+
+def _again(columns: Mapping[str, Column], times: Sequence[Column], declared: Container[str], free: list[str], path: Path) -> list[Column]:
+    further, rest = list[Column](), list(free)
+    for quantity in (q for q in QUANTITIES if q.name in _COMPARED and q.name in columns and q.name not in declared):
+        while (column := _known(quantity, rest, path, own=False)) is not None:
+            further.append(column)
+            rest.remove(column.name)
+    if len(times) == 1 and "time" not in declared:
+        further += [column for column in _times(rest)[:1] if column.unit not in WEEK]
+    return further
 
 
 _NAMES = frozenset(

@@ -27,6 +27,7 @@ from navbound.read.tables.columns import (
 from navbound.read.tables.stated_units import is_row_of_units, require_same
 from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, understand, units
+from navbound.units import EARTH_RADIUS_M
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -62,13 +63,23 @@ def texts(frame: pl.DataFrame) -> set[str]:
     return {name for name, each in written.items() if each.count() and each.cast(pl.Float64, strict=False).count() == 0}
 
 
+_APART_M = 100.0
+"""Two columns of one position contradict each other beyond it: two antennas and two filters do not. Provenance: ours. [m]"""
+_DIRECTED_MPS = 2.0
+"""Slower velocities have no direction. Provenance: ours. [m/s]"""
+
+
 def _with_speed(part: pl.DataFrame) -> pl.DataFrame:
-    """The speed over the ground, of the velocities north and east where no column or no value states it."""
+    """The speed over the ground, the largest that any column states, and its direction, of the velocities where no column states it."""
     if not {"vel_n_mps", "vel_e_mps"} <= set(part.columns):
         return part
     of_velocity = (pl.col("vel_n_mps") ** 2 + pl.col("vel_e_mps") ** 2).sqrt()
-    reported = [pl.col("ground_speed_mps")] if "ground_speed_mps" in part.columns else []
-    return part.with_columns(pl.coalesce(*reported, of_velocity).alias("ground_speed_mps")).drop("vel_n_mps", "vel_e_mps")
+    speeds = [pl.col(name) for name in ("ground_speed_mps",) if name in part.columns]
+    tracks = [pl.col(name) for name in ("ground_track_rad",) if name in part.columns]
+    whither = pl.when(of_velocity > _DIRECTED_MPS).then(pl.arctan2("vel_e_mps", "vel_n_mps"))
+    return part.with_columns(
+        pl.max_horizontal(*speeds, of_velocity).alias("ground_speed_mps"), pl.coalesce(*tracks, whither).alias("ground_track_rad")
+    ).drop("vel_n_mps", "vel_e_mps")
 
 
 _WORDY = r"^[\s#\"(\[]*([A-Za-z°]|1e-7 deg|1?\s*$|-\s*$)"
@@ -95,17 +106,20 @@ class Values:
         self.tally, self.notes, self.position_doubts = Tally(), list[str](), list[str]()
         self._path, self._stem, self._mapping, self._required = path, stem, mapping, required
         self._dated = position_time(mapping.unused)
+        self._second = next((column for column in mapping.again if column.quantity == "time"), None)
         self._nowhere = Nowhere()
+        self._apart_m: dict[str, float] = {}
+        self._time_apart_s = 0.0
         self._callsign: str | None = None
         self._callsigns = dict[str, None]()
         self._last_line = 0
-        self._facts, self._facts_dated = list[TimeFacts](), list[TimeFacts]()
+        self._facts, self._facts_dated, self._facts_second = list[TimeFacts](), list[TimeFacts](), list[TimeFacts]()
         self._dtypes: dict[str, pl.DataType] = {}
         self._n_unknown = 0
         self._unknown_statuses: dict[str, None] = {}
         self._unknown: dict[str, dict[str, None]] = {}
         self._largest = dict.fromkeys(POSITION, 0.0)
-        self._unit = self._unit_dated = ""
+        self._unit = self._unit_dated = self._unit_second = ""
         self._n_heights = self._n_feet = self._n_metres = 0
 
     def take(self, frame: pl.DataFrame) -> pl.DataFrame:
@@ -141,7 +155,7 @@ class Values:
                 LEVELS + place, f"{heading}: {levels.REASON}", where.height, where[LINE][0], str(where[heading][0]), kind="quiet"
             )
         part = self._with_age(self._with_unread(self._with_track(part, frame), frame), frame)
-        part = _with_speed(part).with_columns(*_reasons(frame, against), *self._raw(frame))
+        part = _with_speed(self._with_other_columns(part, frame)).with_columns(*_reasons(frame, against), *self._raw(frame))
         for name in POSITION:
             if name in part.columns:
                 self._largest[name] = max(self._largest[name], _largest(part[name]))
@@ -163,6 +177,22 @@ class Values:
             values = [(each * lengths[name]).alias(name) for name, each in numbers_of.items()]
             if values:
                 part = part.with_columns(pl.DataFrame(values).max_horizontal().alias(quantity))
+        return part
+
+    def _with_other_columns(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
+        """What further columns say of the speed and the position: the largest speed counts, and two positions contradict each other."""
+        scale_m = {"est_lat_rad": pl.lit(EARTH_RADIUS_M), "est_lon_rad": EARTH_RADIUS_M * pl.col("est_lat_rad").cos()}
+        for column in self._mapping.again:
+            if column.quantity not in part.columns or _no_field(frame.schema[column.name]):
+                continue
+            other, _ = numbers(frame[column.name], column)
+            if column.quantity == "ground_speed_mps":
+                part = part.with_columns(pl.max_horizontal(column.quantity, other).alias(column.quantity))
+            else:
+                turns = ((pl.col(column.quantity) - other) / (2.0 * math.pi)).round()
+                apart_m = (pl.col(column.quantity) - other - 2.0 * math.pi * turns).abs() * scale_m[column.quantity]
+                largest_m = _largest(part.select(apart_m.alias("apart_m"))["apart_m"])
+                self._apart_m[column.name] = max(self._apart_m.get(column.name, 0.0), largest_m)
         return part
 
     def _with_track(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
@@ -245,7 +275,11 @@ class Values:
             self._dated = None
         dated = [] if self._dated is None else [self._dated]
         self._facts_dated += [TimeFacts.of(frame, [column]) for column in dated]
-        columns = {column.name: frame[column.name] for column in (*self._mapping.times, *dated)}
+        if self._second is not None and _no_field(frame.schema[self._second.name]):
+            self._second = None
+        second = [] if self._second is None else [self._second]
+        self._facts_second += [TimeFacts.of(frame, [column]) for column in second]
+        columns = {column.name: frame[column.name] for column in (*self._mapping.times, *dated, *second)}
         self._dtypes |= {name: values.dtype for name, values in columns.items()}
         return [values.alias(_RAW + name) for name, values in columns.items()]
 
@@ -319,6 +353,7 @@ class Values:
             self.notes.append(f"{name}: no column names the aircraft; each of {len(self._callsigns)} callsigns is a track of its own")
         self._look_like_radians()
         self._look_like_feet()
+        self._look_like_another()
         self._unit = self._understood(self._mapping.times, self._facts)
         if self._dated is not None:
             try:
@@ -326,8 +361,15 @@ class Values:
             except FormatError as e:
                 self.notes.append(f"{name}: “{self._dated.name}” is not used: {e.message}")
                 self._dated = None
+        if self._second is not None:
+            try:
+                # What it may be is no remark on the times that are read.
+                facts = TimeFacts.together(self._facts_second)
+                self._unit_second = understand(facts, [self._second], self._dtypes[self._second.name], self._path, [])
+            except FormatError:
+                self._second = None
         # The numbers of all rows are needed no more.
-        self._facts, self._facts_dated = [], []
+        self._facts, self._facts_dated, self._facts_second = [], [], []
 
     def _understood(self, columns: list[Column], facts: list[TimeFacts]) -> str:
         return understand(TimeFacts.together(facts), columns, self._dtypes[columns[0].name], self._path, self.notes)
@@ -357,6 +399,7 @@ class Values:
             pl.coalesce(_BAD, timeless).alias(_BAD),
             pl.when(pl.col(_BAD).is_null()).then(_text(raw[name], timeless.is_not_null())).otherwise(pl.col(_EXAMPLE)).alias(_EXAMPLE),
         )
+        self._compare_times(out["time_ns"], raw)
         out = self._positions_dated(out, raw).drop(pl.selectors.starts_with(_RAW))
         if _AGE in out.columns:
             valid_ns = pl.col("time_ns") - (pl.col(_AGE) * 1e9).round().cast(pl.Int64)
@@ -367,6 +410,19 @@ class Values:
             kind: Kind = "quiet" if str(reason_text).endswith(": empty") or reason_text == NO_PLACE else "row"
             self.tally.add(REQUIRED, str(reason_text), group.height, group[LINE][0], str(group[_EXAMPLE][0]), kind=kind)
         return out.filter(pl.col(_BAD).is_null()).drop(_BAD, _EXAMPLE), left_out(without)
+
+    def _compare_times(self, time_ns: pl.Series, raw: pl.DataFrame) -> None:
+        """Doubt the times where a second column of times says another: the order of names must not decide."""
+        if self._second is None or self._time_apart_s > statements.STALE_AFTER_S:
+            return
+        other_ns, _ = converted(raw, [self._second], self._unit_second)
+        self._time_apart_s = _largest((other_ns - time_ns).cast(pl.Float64) * 1e-9)
+        if self._time_apart_s > statements.STALE_AFTER_S:
+            used = self._mapping.times[0].name
+            self.position_doubts.append(
+                f"{self._path.name}: “{used}” and “{self._second.name}” are two columns of time and {self._time_apart_s:.6g} s apart; "
+                f"{declare(f'time={used}')}, or the other; nothing is shown until it is stated"
+            )
 
     def _without_nowhere(self, part: pl.DataFrame) -> pl.DataFrame:
         """A place that a receiver writes that has none speaks against its row; a receiver without a position is no damage of the file."""
@@ -397,6 +453,16 @@ class Values:
         """Quantity to the column that it was read from and its unit."""
         columns = {c.quantity: f"{c.name}:{c.unit}" for c in self._mapping.columns.values()}
         return columns | {"time": ", ".join(units(self._mapping.times, self._unit))}
+
+    def _look_like_another(self) -> None:
+        """Doubt a position of which two columns say something else: the order of names must not decide."""
+        for column in self._mapping.again:
+            apart_m, used = self._apart_m.get(column.name, 0.0), self._mapping.columns.get(column.quantity)
+            if used is not None and apart_m > _APART_M:
+                self.position_doubts.append(
+                    f"{self._path.name}: “{used.name}” and “{column.name}” are two columns of one quantity and {apart_m:.0f} m apart; "
+                    f"{declare(f'{column.quantity}={used.name}')}, or the other; nothing is shown until it is stated"
+                )
 
     def _look_like_radians(self) -> None:
         """Doubt degrees that could be radians: a flight near 0 N 0 E and a wrong unit look alike, so a person must state the unit."""
@@ -463,7 +529,7 @@ def one_row_a_time(out: pl.DataFrame, tally: Tally) -> Repeats:
 
 
 def _no_field(dtype: pl.DataType) -> bool:
-    return dtype.is_nested() or dtype in (pl.Binary, pl.Object)
+    return dtype.is_nested() or dtype in (pl.Binary, pl.Object, pl.Duration)
 
 
 def _reasons(frame: pl.DataFrame, against: list[tuple[str, pl.Series]]) -> list[pl.Series]:

@@ -73,7 +73,11 @@ def verdict_words(
 
 def unread_words(unread: Sequence[str]) -> list[str]:
     """What a file says of accuracy or integrity that was not understood; nothing where there is none."""
-    return [f"Not understood and not used, though the names speak of accuracy or integrity: {'; '.join(unread)}."] if unread else []
+    return (
+        [f"Not understood and not used, though the names speak of accuracy, of integrity or of another position: {'; '.join(unread)}."]
+        if unread
+        else []
+    )
 
 
 def _assumed(verdict: Verdict, covariance: CovarianceOrigin) -> str:
