@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import polars as pl
 import pytest
@@ -17,7 +18,7 @@ SPEED_MPS = 250.0
 DEG_PER_M = 1.0 / 111_195.0
 
 
-def rows(n: int = N, *, begin_s: int = 0, **added: object) -> list[dict[str, object]]:
+def rows(n: int = N, *, begin_s: int = 0, **added: Any) -> list[dict[str, Any]]:
     """A flight to the north at 250 m/s, one row a second, that states NACp 10; a callable is of the second."""
     return [
         {
@@ -32,7 +33,11 @@ def rows(n: int = N, *, begin_s: int = 0, **added: object) -> list[dict[str, obj
     ]
 
 
-def analyzed(tmp_path: Path, table: list[dict[str, object]]) -> Run:
+def column(name: str, value: object) -> dict[str, Any]:
+    return {name: value}
+
+
+def analyzed(tmp_path: Path, table: list[dict[str, Any]]) -> Run:
     path = tmp_path / "a.json"
     path.write_text(json.dumps(table), encoding="utf-8")
     return navbound.analyze(path)
@@ -50,14 +55,14 @@ def reasons(run: Run) -> set[str | None]:
 def test_a_position_that_is_said_to_be_old_is_as_one_that_is_held(
     tmp_path: Path, name: str, age_s: float, reason: str | None, verdict: str
 ) -> None:
-    run = analyzed(tmp_path, rows(**{name: lambda k: 1_700_000_000 + k - age_s}))
+    run = analyzed(tmp_path, rows(**column(name, lambda k: 1_700_000_000 + k - age_s)))
     assert (reasons(run), run.summary.verdict.id) == ({reason}, verdict)
 
 
 @pytest.mark.parametrize(("age_s", "reason"), [(0.5, None), (1.0, None), (1.9, "position_held"), (2.5, "reported")])
 @pytest.mark.parametrize("name", ["seen_pos", "fix_age", "age_s"])
 def test_an_age_of_a_position_dates_it(tmp_path: Path, name: str, age_s: float, reason: str | None) -> None:
-    assert reasons(analyzed(tmp_path, rows(**{name: age_s}))) == {reason}
+    assert reasons(analyzed(tmp_path, rows(**column(name, age_s)))) == {reason}
 
 
 def test_the_way_in_the_age_of_a_position_is_said(tmp_path: Path) -> None:
@@ -89,7 +94,7 @@ def test_a_callsign_that_comes_later_or_is_absent_for_a_while_is_of_one_track(tm
 
 @pytest.mark.parametrize("name", ["hex", "registration", "mode_s", "icao_address", "ModeS", "Tail Number"])
 def test_a_column_that_names_the_aircraft_divides_tracks(tmp_path: Path, name: str) -> None:
-    run = analyzed(tmp_path, [*rows(**{name: "3c6444"}), *rows(begin_s=N, nac_p=None, **{name: "39bda1"})])
+    run = analyzed(tmp_path, [*rows(**column(name, "3c6444")), *rows(begin_s=N, nac_p=None, **column(name, "39bda1"))])
     assert run.epochs["track"].unique().sort().to_list() == ["39bda1", "3c6444"]
     assert run.summary.verdict.id == "not_shown"
 
@@ -107,7 +112,7 @@ def test_a_column_that_names_the_aircraft_divides_tracks(tmp_path: Path, name: s
     ],
 )
 def test_a_position_that_others_computed_is_none_of_the_aircraft(tmp_path: Path, name: str, source: str, own: bool) -> None:
-    assert reasons(analyzed(tmp_path, rows(**{name: source}))) == {None if own else "reported"}
+    assert reasons(analyzed(tmp_path, rows(**column(name, source)))) == {None if own else "reported"}
 
 
 def test_a_type_of_aircraft_says_nothing_against_a_position(tmp_path: Path) -> None:
@@ -143,12 +148,14 @@ def led_off(k: int) -> float:
 @pytest.mark.parametrize("direction", [{"track_deg": 0.0}, {"vn": SPEED_MPS, "ve": 0.0}])
 @pytest.mark.parametrize(("lon_deg", "doubted"), [(led_off, False), (lambda k: led_off(5 * k), True), (lambda _: 2.0, False)])
 def test_positions_that_end_elsewhere_than_speed_and_track_lead_are_doubted(
-    tmp_path: Path, direction: dict[str, object], lon_deg: object, doubted: bool
+    tmp_path: Path, direction: dict[str, Any], lon_deg: Any, doubted: bool
 ) -> None:
     """75 m a second aside of 250 m/s are 4500 m a minute, where 5 % and 3 m/s leave 930 m; 15 m a second are 900 m."""
     verdict = analyzed(tmp_path, rows(300, lon_deg=lon_deg, **direction)).summary.verdict
     assert any("positions end elsewhere" in each for each in verdict.position_doubts) == doubted
     assert (verdict.id == "inside") != doubted
+    left_out = dict.fromkeys(("ground_track_rad", "vel_n_mps", "vel_e_mps"), "-")
+    assert navbound.analyze(tmp_path / "a.json", columns=left_out).summary.verdict.id == "inside"
 
 
 def test_of_two_speeds_the_larger_counts(tmp_path: Path) -> None:
@@ -188,12 +195,12 @@ def test_a_clock_since_the_start_is_no_second_time(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["true_lat_deg", "gt_lat", "lat_truth_deg", "ref_lat", "rtk_latitude", "ins_lon", "lat2"])
 def test_another_place_that_nothing_reads_is_named(tmp_path: Path, name: str) -> None:
-    assert analyzed(tmp_path, rows(**{name: 48.1})).summary.verdict.unread == [name]
+    assert analyzed(tmp_path, rows(**column(name, 48.1))).summary.verdict.unread == [name]
 
 
 @pytest.mark.parametrize("name", ["dest_lat", "runway_lon", "home_latitude", "wpt_lat"])
 def test_a_place_of_something_else_is_not(tmp_path: Path, name: str) -> None:
-    assert analyzed(tmp_path, rows(**{name: 48.1})).summary.verdict.unread == []
+    assert analyzed(tmp_path, rows(**column(name, 48.1))).summary.verdict.unread == []
 
 
 def test_a_column_of_durations_is_refused_by_its_name(tmp_path: Path) -> None:

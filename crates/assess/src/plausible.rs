@@ -3,15 +3,16 @@
 //! A position report does not show whether it is true: a decoder or a receiver repeats the last position when none arrives, and a falsified
 //! receiver jumps. Both leave a track that no bound of the navigation error covers, so they are found here, first.
 
-mod way;
+mod repeats;
 
 use navbound_core::frame::EcefPosition;
 use navbound_core::monitor::motion::{Between, Gone, repeated, sea_level, within};
+use navbound_core::monitor::way::Way;
 use navbound_core::quantity::{GpsTime, OutOfDomain};
 
 pub use navbound_core::monitor::motion::{Finding, Limits, Report};
 
-use way::{Repeats, Way};
+use repeats::Repeats;
 
 /// Finding, age of the position \[s\] and distance from the position before it \[m\] (straight line at sea level).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -215,7 +216,7 @@ impl Track {
     fn step(&mut self, report: &Report, speed_doubted: bool) -> Result<Judged, OutOfDomain> {
         let limits = &self.limits;
         let here = sea_level(report)?;
-        let behind = self.way.is_behind(report, &here, limits);
+        let behind = self.way.is_behind(report, limits)?;
         let repeated_since = self.repeats.since(report);
         let Some((fix, from)) = self.last else {
             self.last = Some((*report, here));

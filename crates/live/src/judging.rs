@@ -62,6 +62,7 @@ fn sample(settings: &Settings, track: &mut Track, position: &Position) -> (Sampl
     }
     match position.covariance_m2 {
         None => refuse(Reason::NoCovariance),
+        Some([.., uu]) if uu < 0.0 && !counts_as_zero(uu) => refuse(Reason::NotACovariance),
         Some([ee, _, nn, .., uu]) if [ee, nn, uu].into_iter().any(counts_as_zero) => {
             refuse(Reason::ZeroCovariance);
             // In the plane it bounds nothing, so that no alert rests on it.

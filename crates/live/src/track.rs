@@ -6,6 +6,7 @@ use crate::output::Kind;
 use navbound_core::judge::{self, Judge};
 use navbound_core::monitor::motion::{Fall, Gone, Motion, Owed, Report};
 use navbound_core::monitor::neighbours::{Height, Neighbours, Place};
+use navbound_core::monitor::way::{Mark, Way};
 use navbound_core::quantity::{GpsTime, Metres};
 
 /// Everything that is kept of a track.
@@ -72,12 +73,8 @@ impl Track {
         to.option(self.last, |to, time| to.i64(time.nanoseconds()));
         to.flag(self.stepped);
         to.option(self.along, |to, along| to.f64(along.m()));
-        for report in [self.motion.last, self.motion.anchor] {
-            to.option(report, |to, report| {
-                to.i64(report.time.nanoseconds());
-                [report.lat_rad, report.lon_rad, report.speed_mps, report.variance_m2].into_iter().for_each(|number| to.f64(number));
-                to.option(report.height, height);
-            });
+        for each in [self.motion.last, self.motion.anchor] {
+            to.option(each, report);
         }
         to.option(self.motion.jumped, |to, time| to.i64(time.nanoseconds()));
         to.option(self.motion.gone.seen, |to, time| to.i64(time.nanoseconds()));
@@ -95,6 +92,13 @@ impl Track {
         to.flag(gone.moved);
         to.f64(gone.crawled_s);
         to.option(self.motion.height, height);
+        to.option(self.motion.way.last, |to, (place, so_far)| {
+            report(to, place);
+            mark(to, so_far);
+        });
+        for each in self.motion.way.marks {
+            to.option(each, mark);
+        }
         for place in self.neighbours.last {
             to.option(place, |to, place| {
                 to.i64(place.time.nanoseconds());
@@ -119,12 +123,7 @@ impl Track {
         let last = from.option(Reader::i64)?.map(GpsTime::from_nanoseconds);
         let stepped = from.flag()?;
         let along = from.option(Reader::f64)?.map(Metres::new);
-        let report = |from: &mut Reader<'_>| {
-            let time = GpsTime::from_nanoseconds(from.i64()?);
-            let [lat_rad, lon_rad, speed_mps, variance_m2] = [from.f64()?, from.f64()?, from.f64()?, from.f64()?];
-            Ok(Report { time, fixed: None, lat_rad, lon_rad, speed_mps, variance_m2, height: from.option(read_height)? })
-        };
-        let (last_different, anchor) = (from.option(report)?, from.option(report)?);
+        let (last_different, anchor) = (from.option(read_report)?, from.option(read_report)?);
         let jumped = from.option(Reader::i64)?.map(GpsTime::from_nanoseconds);
         let gone = Gone {
             seen: from.option(Reader::i64)?.map(GpsTime::from_nanoseconds),
@@ -142,7 +141,12 @@ impl Track {
             moved: from.flag()?,
             crawled_s: from.f64()?,
         };
-        let motion = Motion { last: last_different, anchor, jumped, gone, height: from.option(read_height)? };
+        let height = from.option(read_height)?;
+        let mut way = Way { last: from.option(|from| Ok((read_report(from)?, read_mark(from)?)))?, ..Way::default() };
+        for each in &mut way.marks {
+            *each = from.option(read_mark)?;
+        }
+        let motion = Motion { last: last_different, anchor, jumped, gone, height, way };
         let place = |from: &mut Reader<'_>| {
             let time = GpsTime::from_nanoseconds(from.i64()?);
             Ok(Place { time, lat_rad: from.f64()?, lon_rad: from.f64()?, variance_m2: from.f64()? })
@@ -151,6 +155,27 @@ impl Track {
         let (waiting, states_rnp, silent) = (Waiting::read(from)?, from.flag()?, from.flag()?);
         Ok(Self { judge, incarnation, open, last, stepped, along, motion, neighbours, waiting, states_rnp, silent })
     }
+}
+
+fn report(to: &mut Writer, report: Report) {
+    to.i64(report.time.nanoseconds());
+    [report.lat_rad, report.lon_rad, report.speed_mps, report.variance_m2].into_iter().for_each(|number| to.f64(number));
+    to.option(report.height, height);
+}
+
+fn read_report(from: &mut Reader<'_>) -> Result<Report, Damaged> {
+    let time = GpsTime::from_nanoseconds(from.i64()?);
+    let [lat_rad, lon_rad, speed_mps, variance_m2] = [from.f64()?, from.f64()?, from.f64()?, from.f64()?];
+    Ok(Report { time, fixed: None, lat_rad, lon_rad, speed_mps, variance_m2, height: from.option(read_height)? })
+}
+
+fn mark(to: &mut Writer, mark: Mark) {
+    to.i64(mark.time.nanoseconds());
+    [mark.moved_m, mark.reported_m].into_iter().for_each(|number| to.f64(number));
+}
+
+fn read_mark(from: &mut Reader<'_>) -> Result<Mark, Damaged> {
+    Ok(Mark { time: GpsTime::from_nanoseconds(from.i64()?), moved_m: from.f64()?, reported_m: from.f64()? })
 }
 
 fn height(to: &mut Writer, height: Height) {

@@ -9,6 +9,7 @@ import numpy as np
 import polars as pl
 
 from navbound.read.checks.places import east_north_m
+from navbound.read.tables.columns import NO_COLUMN, declare
 from navbound.table.columns import HORIZONTAL
 
 if TYPE_CHECKING:
@@ -124,7 +125,8 @@ class Speeds:
             doubts.append(
                 f"The positions end elsewhere than the recording's own speeds and tracks lead in {self._n_aside} of {self._n_directed} "
                 f"minutes (at worst {aside_m:.0f} m aside on a way of {stated_m:.0f} m): the positions are led off, or a column, such as "
-                "that of the track, is not what it is read as"
+                "that of the track, is not what it is read as "
+                f"({declare(f'ground_track_rad={NO_COLUMN}')}, to leave the track out)"
             )
         return doubts
 

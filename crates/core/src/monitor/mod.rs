@@ -17,3 +17,4 @@ mod snapshot;
 pub mod state;
 mod state_order;
 mod wait;
+pub mod way;

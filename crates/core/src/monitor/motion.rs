@@ -5,6 +5,7 @@
 
 use super::clock::arrival;
 use super::neighbours::{Height, Place, east_north_m, one_height, one_place};
+use super::way::Way;
 use crate::frame::{EcefPosition, Geodetic, LatLon, ecef_from_geodetic};
 use crate::quantity::{GpsTime, Metres, OutOfDomain, Radians, Reason};
 use crate::special::float::hypot;
@@ -322,6 +323,8 @@ pub struct Motion {
     pub gone: Gone,
     /// The height that the last report stated.
     pub height: Option<Height>,
+    /// The way that it made good.
+    pub way: Way,
 }
 
 impl Motion {
@@ -333,6 +336,7 @@ impl Motion {
         let here = sea_level(report)?;
         let Some((from, seen)) = self.last.zip(self.gone.seen) else {
             (self.last, self.anchor, self.height) = (Some(*report), Some(*report), report.height);
+            self.way.is_behind(report, limits)?;
             self.gone.step(report, false, limits);
             return Ok(Finding::Plausible);
         };
@@ -354,7 +358,8 @@ impl Motion {
             } else {
                 self.stepped(&from, report, &here, stood_s, limits)?
             };
-            if step != Finding::Jump && self.gone.stands_falsely(report, limits).is_some() { Finding::Stale } else { step }
+            let behind = self.way.is_behind(report, limits)?.is_some();
+            if step != Finding::Jump && (behind || self.gone.stands_falsely(report, limits).is_some()) { Finding::Stale } else { step }
         };
         if finding == Finding::Jump {
             self.dispute(report.time);

@@ -69,6 +69,34 @@ fn a_position_that_stands_from_the_first_record_under_stamps_that_crawl_is_stale
     }
 }
 
+/// 64 m/s over 20 s are 1280 m, of which a position must make good half, less 100 m: noise of a metre is no flight.
+#[test]
+fn a_position_that_stands_with_noise_while_its_aircraft_moves_is_stale() {
+    let noise = |k: u32| 2e-7 * (f64::from(k * 7 % 11) / 5.0 - 1.0) + 1e-12 * f64::from(k);
+    let stands = |k: u32| line("d", f64::from(k), &placed(0.5 + noise(k), SPEED));
+    let (epochs, _) = from_file((0..100).map(stands));
+    assert!(epochs[..20].iter().all(|e| e.reason.is_none()), "{:?}", epochs[..20].iter().map(|e| e.reason).collect::<Vec<_>>());
+    assert!(epochs[20..].iter().all(|e| e.reason == Some(Reason::PositionStale)));
+    assert!(epochs[20..].iter().all(|e| e.alert == rnp::Alert::Unavailable));
+    // The same noise on a flight, and on an aircraft that says that it stands.
+    for (of, speed) in [(1.0, SPEED), (0.0, ",\"ground_speed_mps\":0.0")] {
+        let (epochs, _) = from_file((0..100).map(|k| line("d", f64::from(k), &placed(0.5 + of * 1e-5 * f64::from(k) + noise(k), speed))));
+        assert!(epochs.iter().all(|e| e.reason.is_none()), "{of}");
+    }
+}
+
+/// The plane alone is judged, but a variance below zero says that the covariance is none.
+#[test]
+fn a_vertical_variance_below_zero_is_no_covariance() {
+    let of = |uu: f64| {
+        let axes = format!("{SPEED},\"cov_ee_m2\":9.0,\"cov_en_m2\":0.0,\"cov_nn_m2\":9.0,\"cov_uu_m2\":{uu}");
+        let text = |k: u32| line("d", f64::from(k), &placed(flies(k), &axes).replace(",\"sigma_m\":10.0", ""));
+        from_file((0..20).map(text)).0
+    };
+    assert!(of(16.0).iter().all(|e| e.status == Status::Ok));
+    assert!(of(-9.0).iter().all(|e| (e.status, e.reason) == (Status::InvalidInput, Some(Reason::NotACovariance))));
+}
+
 #[test]
 fn fewer_satellites_than_determine_a_position_are_degraded_whatever_the_source_says() {
     for (n_sv, few) in [("0", true), ("3", true), ("4", false), ("9", false), ("null", false)] {

@@ -401,7 +401,8 @@ def _ended(session: Session, settings: Settings, *, json: bool) -> None:
         f"session in {session.folder}"
     )
     if not session.n_epochs:
-        sentence += f"; no epoch was judged: nothing of the source is read as {settings.format}; --format names what it sends"
+        needs = "; a line is an object with at least v (1), track, time_ns, est_lat_rad, est_lon_rad" if settings.format == "json" else ""
+        sentence += f"; no epoch was judged: nothing of the source is read as {settings.format}{needs}; --format names what it sends"
     if keys := session.passed_over():
         sentence += f"; keys that nothing reads: {', '.join(f'{n} {name}' for name, n in keys.items())}"
     if session.unfinished:

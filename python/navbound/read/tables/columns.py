@@ -315,6 +315,9 @@ def _length_in(name: str) -> float | None:
     return UNITS["m"].get(stem.rsplit("_", 1)[-1], 1.0)
 
 
+NO_COLUMN = "-"
+"""Declared of a quantity that no column is to be read as."""
+
 POSITION = ("est_lat_rad", "est_lon_rad")
 """What the rows of a recorded track need beside a time."""
 
@@ -335,7 +338,8 @@ def assign(
     names : iterable of str
         Columns of the file.
     declared : mapping, optional
-        Quantity, or ``time``, to ``column`` or ``column:unit``; goes before the known names.
+        Quantity, or ``time``, to ``column`` or ``column:unit``, or to ``-`` where no column is to be read as it; goes before the known
+        names.
     path : Path
         The file, for messages.
     needs : sequence of str
@@ -359,7 +363,9 @@ def assign(
     times: list[Column] = []
     known = {"time", "time_ns", *WEEK, *(q.name for q in quantities)}
     beside = {key: value for key, value in (where_present or {}).items() if key in known and _column_named(value, names)[0] in names}
-    for key, value in (beside | dict(declared or {})).items():
+    stated = beside | dict(declared or {})
+    absent = {key for key, value in stated.items() if value == NO_COLUMN and value not in names and key in known}
+    for key, value in ((key, value) for key, value in stated.items() if key not in absent):
         column = _declared(key, value, names, path, quantities)
         if column.quantity == "time":
             times.append(column)
@@ -369,11 +375,11 @@ def assign(
     if {_plain(name)[0] for name in names} & TRANSPONDER:
         quantities = tuple(q for q in quantities if q.name != "alert")
     if {name for name, _ in OPENSKY_STATES.values()} <= set(names):
-        states = {key: Column(key, name, unit) for key, (name, unit) in OPENSKY_STATES.items() if name not in taken}
+        states = {key: Column(key, name, unit) for key, (name, unit) in OPENSKY_STATES.items() if name not in taken and key not in absent}
         columns = states | columns
         taken |= {c.name for c in states.values()}
     for quantity in quantities:
-        if quantity.name not in columns:
+        if quantity.name not in columns and quantity.name not in absent:
             assigned = _known(quantity, [n for n in names if n not in taken], path, own=own)
             if assigned is not None:
                 columns[quantity.name] = assigned
