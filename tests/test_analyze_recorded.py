@@ -256,9 +256,8 @@ def test_a_covariance_that_is_none_is_not_believed(tmp_path: Path) -> None:
     assert epochs["cov_ee_m2"].to_list() == [4.0, None, 0.0, None]
 
 
-def test_a_variance_below_the_last_bit_of_the_position_is_one_of_zero(tmp_path: Path) -> None:
-    # The last bit of a number above 1 rad, 2^-52 rad, is 1.41e-9 m on the ground, and its square 2.0e-18 m2.
-    stated = ["9,0,9,,,4", "1e-320,0,9,,,4", "9,0,5e-324,,,4", "9,0,9,,,1e-320", "1.9e-18,0,9,,,4", "2.1e-18,0,9,,,4"]
+def test_a_variance_below_a_tenth_of_a_millimetre_squared_is_one_of_zero(tmp_path: Path) -> None:
+    stated = ["9,0,9,,,4", "1e-320,0,9,,,4", "9,0,5e-324,,,4", "9,0,9,,,1e-320", "0.99e-8,0,9,,,4", "1.01e-8,0,9,,,4"]
     rows = ["gps_time_s,lat_deg,lon_deg,cov_ee_m2,cov_en_m2,cov_nn_m2,cov_eu_m2,cov_nu_m2,cov_uu_m2"]
     rows += [f"{1.3e9 + i},{48 + 5e-4 * i},2,{cov}" for i, cov in enumerate(stated)]
     (tmp_path / "cov.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")

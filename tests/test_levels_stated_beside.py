@@ -61,7 +61,7 @@ def test_a_statement_against_the_position_leaves_no_level(column: str, value: ob
     assert verdict(tmp_path, column, value).id == "nothing_judged"
 
 
-@pytest.mark.parametrize(("column", "value"), [("hal_exceeded", 1), ("hpl_flag", "unusable")])
+@pytest.mark.parametrize(("column", "value"), [("hal_margin", 1), ("hpl_flag", "unusable")])
 def test_what_is_not_understood_is_named_in_the_verdict(column: str, value: object, tmp_path: Path) -> None:
     of = verdict(tmp_path, column, value)
     assert of.unread == [column]

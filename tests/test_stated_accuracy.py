@@ -138,7 +138,7 @@ def test_a_distance_off_the_track_is_an_error(tmp_path: Path, name: str, value: 
 def test_a_name_that_may_be_an_error_is_named_and_not_compared(tmp_path: Path, name: str) -> None:
     verdict = navbound.analyze(table(tmp_path / "a.csv", N, sigma_m=SIGMA_M, added={name: np.full(N, 3000.0)})).summary.verdict
     assert (verdict.id, verdict.unread) == ("inside", [name])
-    assert f"accuracy or integrity: {name}" in verdict.words
+    assert f"of another position: {name}" in verdict.words
 
 
 def test_a_text_among_the_numbers_that_are_compared_is_counted(tmp_path: Path) -> None:

@@ -82,7 +82,7 @@ def stating(tmp_path: Path, name: str, fine: object, bad: object, *, sigma_m: fl
         ("no_position", "false", "Y"),
         ("no_position", 0, 1),
         ("seconds_since_update", 0.4, 45),
-        ("age_s", 2.0, 2.1),
+        ("age_s", 1.0, 2.1),
     ],
 )
 def test_a_row_that_is_not_valid_by_its_own_recording_is_not_judged(tmp_path: Path, name: str, fine: object, bad: object) -> None:
@@ -169,7 +169,7 @@ def test_an_alert_under_any_of_its_names_is_one(tmp_path: Path, name: str, fine:
         ("NSE", "3000", "NSE"),
         ("err_h_m", "4000", "err_h_m"),
         ("HFOM", "2000", "HFOM"),
-        ("position_source", "2", "position_source"),
+        ("position_source", "5", "position_source (5)"),
         ("age_s", "old", "age_s (old)"),
         ("age", "900", "age"),
         ("SSM", "1", "SSM (1)"),

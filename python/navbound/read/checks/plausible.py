@@ -58,7 +58,7 @@ _UNDATED = -(2**63)
 
 _REASON_ID = [None, "position_held", "position_stale", "position_jump", "position_not_settled", "position_late"]
 """What the core found, by its codes."""
-_HELD, _STALE, _JUMP = (_REASON_ID.index(id_) for id_ in ("position_held", "position_stale", "position_jump"))
+_REPEATED, _STALE, _JUMP = (_REASON_ID.index(id_) for id_ in ("position_held", "position_stale", "position_jump"))
 
 
 @dataclass(frozen=True)
@@ -176,7 +176,7 @@ class Checker:
         time_ns, fixed_ns, _, _, speed_mps = reports
         dated = fixed_ns != _UNDATED
         age_s = np.where(dated, (time_ns - np.where(dated, fixed_ns, time_ns)) * 1e-9, 0.0)
-        old = np.where(age_s > self._limits.stale_after_s, _STALE, np.where(age_s > self._limits.fix_latency_s, _HELD, 0))
+        old = np.where(age_s > self._limits.stale_after_s, _STALE, np.where(age_s > self._limits.fix_latency_s, _REPEATED, 0))
         out = np.where(code <= _STALE, np.maximum(code, old), code).astype(np.uint8)
         self._n_old += int((out != code).sum())
         young = age_s[out == 0]

@@ -254,7 +254,7 @@ def kind_of(plain_name: str) -> Kind | None:
 
 
 _ACCURACY = _words(
-    "acc hacc pacc accuracy uncertainty unc sigma std stddev sd sdev epe eph ehpe ehe epx epy cep cep50 cep95 r95 drms 2drms rms hrms hfom "
+    "acc hacc pacc accuracy uncertainty sigma std stddev sd sdev epe eph ehpe ehe epx epy cep cep50 cep95 r95 drms 2drms rms hrms hfom "
     "twodrms hpe herror h50 h95 mrse "
     "fom nse tse fte err error errors herr poserr"
 )
@@ -349,7 +349,7 @@ def speaks_of_level(name: str) -> bool:
 
 
 _WHOSE = _words("h horizontal pos position gps gnss horizontal_position estimated_horizontal estimated_horizontal_position")
-_WHAT = _words("acc accuracy uncertainty unc sigma std stddev")
+_WHAT = _words("acc accuracy uncertainty sigma std stddev")
 BARE_LENGTHS = (
     _words(
         "anp hacc pacc accuracy epe eph ehpe ehe epx epy cep cep50 cep95 r95 drms 2drms twodrms hrms hfom herr poserr "
