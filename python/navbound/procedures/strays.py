@@ -43,7 +43,8 @@ class Stretch:
     end : {"reached", "ends", "leaves"}
         Whether a position beyond the end of the procedure follows, the track ends before it, or the aircraft has left the path.
     short_m : float
-        How far before the end of the procedure the last position near the path is; NaN where that is not defined. [m]
+        How far before the end of the procedure the last position near the path is, of a flight that leaves it the last established one;
+        NaN where that is not defined. [m]
     due_s : float
         How long after the last position the end of the procedure was due, at the mean speed along it; 0 where it is not. [s]
     """
@@ -107,7 +108,8 @@ def _stretch(procedure: Procedure, followed: Followed, time_s: Floats, ok: Indic
     # An open end is nowhere.
     reached = reached or bool(np.isinf(left_m[near]))
     end: Literal["reached", "ends", "leaves"] = "reached" if reached else "leaves" if leaves else "ends"
-    return Stretch(int(ok[0]), last, end, float(left_m[near]), float(due_s) if known else 0.0)
+    short_m = float(left_m[last_ok if leaves else near])
+    return Stretch(int(ok[0]), last, end, short_m, float(due_s) if known else 0.0)
 
 
 def _left(procedure: Procedure, followed: Followed) -> Floats:
