@@ -13,6 +13,7 @@ import pytest
 
 import navbound
 from navbound import path, procedures
+from navbound.procedures.strays import follow
 from navbound.records.procedure import BesideProcedure
 from navbound.run.procedure import Flown
 
@@ -119,6 +120,30 @@ def test_a_turn_back_along_the_path_is_due_and_not_judged() -> None:
     # 33 positions there, 30 back; the first 30 m back are no turn.
     assert (flight.n, flight.n_inside, flight.n_astray) == (34, 34, 29)
     assert "29 positions off the path could not be judged" in flight.verdict
+
+
+def test_a_turn_back_beyond_the_begin_is_as_far_off_as_it_is_from_the_begin() -> None:
+    procedure = path.procedure(SAMPLE, "KDEN", "H26-Z", "FUZZZ", line="RNP 0.3")
+    along = np.concatenate([np.arange(500.0, 7_000.0, 200.0), np.arange(7_000.0, -10_000.0, -200.0)])
+    leg = procedure.core.at(1, along)
+    flight = procedures.judge(procedure, 2.0 * np.arange(along.size), leg["lat_rad"], leg["lon_rad"])
+    back = (np.arange(along.size) > 33) & (along < -1.0 * NM)
+    assert (flight.followed.status[back] == "strayed").all()
+    assert np.abs(np.abs(flight.followed.cross_m[back]) + along[back]).max() < 1.0
+    assert flight.n_inside == flight.n - back.sum()
+
+
+def test_a_procedure_with_an_open_end_has_no_end_to_be_short_of(tmp_path: Path) -> None:
+    lines = SAMPLE.read_text(encoding="ascii").splitlines(keepends=True)
+    file = tmp_path / "climb.txt"
+    # The climb of the missed approach stands in line 25; the way to its hold is left out.
+    file.write_text("".join(lines[:25]), encoding="ascii")
+    for missed, on, end in ((True, 4, "reached"), (True, 3, "ends"), (False, 3, "ends")):
+        procedure = path.procedure(file, "KDEN", "H26-Z", "FUZZZ", line="RNP 0.3", missed=missed)
+        leg = procedure.core.at(on, np.arange(0.0, 4_000.0, 200.0))
+        _, (flight,) = follow(procedure, np.linspace(0.0, 38.0, 20), (leg["lat_rad"], leg["lon_rad"]))
+        assert (flight.end, flight.last) == (end, 19)
+        assert missed or flight.short_m == pytest.approx(procedure.legs[3].length_m - 3_800.0, abs=0.01)
 
 
 def test_what_is_off_the_path_where_a_heading_may_be_flown_is_due_and_not_judged() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -44,7 +45,7 @@ class Stretch:
         Whether a position beyond the end of the procedure follows, the track ends before it, or the aircraft has left the path.
     short_m : float
         How far before the end of the procedure the last position near the path is, of a flight that leaves it the last established one;
-        NaN where that is not defined. [m]
+        infinite or NaN where that is not defined. [m]
     due_s : float
         How long after the last position the end of the procedure was due, at the mean speed along it; 0 where it is not. [s]
     """
@@ -93,7 +94,7 @@ def _rows_to(beyond: Flags, ok: Indices, following: int) -> tuple[int, bool]:
 def _stretch(procedure: Procedure, followed: Followed, time_s: Floats, ok: Indices, until: tuple[int, bool]) -> Stretch:
     last_ok, (stop, reached) = int(ok[-1]), until
     left_m = _left(procedure, followed)
-    speed = _speed(left_m[ok[0]] - left_m[last_ok], time_s[last_ok] - time_s[ok[0]])
+    speed = _speed((left_m[ok[0]], left_m[last_ok]), time_s[last_ok] - time_s[ok[0]])
     tail = np.arange(last_ok + 1, stop)
     tail = tail[time_s[tail] - time_s[last_ok] <= NEXT_FLIGHT_S]
     if not reached and tail.size and time_s[tail[0]] - time_s[last_ok] > left_m[last_ok] / speed + SILENCE_S:
@@ -106,23 +107,24 @@ def _stretch(procedure: Procedure, followed: Followed, time_s: Floats, ok: Indic
         due_s = min(due_s, time_s[stop] - time_s[last])
     known = bool(np.isfinite(due_s)) and due_s > 0.0 and not leaves
     # An open end is nowhere.
-    reached = reached or bool(np.isinf(left_m[near]))
+    reached = reached or math.isinf(procedure.legs[followed.leg[near]].length_m)
     end: Literal["reached", "ends", "leaves"] = "reached" if reached else "leaves" if leaves else "ends"
     short_m = float(left_m[last_ok if leaves else near])
     return Stretch(int(ok[0]), last, end, short_m, float(due_s) if known else 0.0)
 
 
 def _left(procedure: Procedure, followed: Followed) -> Floats:
-    """Distance of every position to the end of the procedure along its legs; NaN where one of them has no length [m]."""
+    """Distance of every position to the end of the procedure along its legs; infinite or NaN where one of them has no length [m]."""
     lengths = np.array([0.0 if leg.state == "point" else leg.length_m for leg in procedure.legs])
     after = np.append(np.cumsum(lengths[::-1])[::-1], 0.0)
     left = after[followed.leg] - followed.along_leg_m
     return np.where(followed.leg < 0, np.nan, np.maximum(left, 0.0))
 
 
-def _speed(way_m: float, time_s: float) -> float:
+def _speed(left_m: tuple[float, float], time_s: float) -> float:
     """Mean speed along the procedure; NaN where it is not known [m/s]."""
-    return float(way_m / time_s) if way_m > 0.0 and time_s > 0.0 else float("nan")
+    before, after = left_m
+    return float((before - after) / time_s) if math.isfinite(after) and before > after and time_s > 0.0 else math.nan
 
 
 def _with_strays(procedure: Procedure, followed: Followed, rows: slice, place_rad: tuple[Floats, Floats]) -> Followed:
