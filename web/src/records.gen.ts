@@ -499,6 +499,22 @@ export interface LegFlown {
     worst_along_m: number | null;
 }
 
+/** What a procedure does not judge of a recording, and what it lacks itself. */
+export interface BesideProcedure {
+    /** Positions of the recording. */
+    n_recorded: number;
+    /** Of these, the positions that are no part of a flight along the procedure (before and after it, in turns, beside holds), by what they are. */
+    n_status: Record<string, number>;
+    /** Flights that end, or leave the path, before the end of the procedure. */
+    n_short: number;
+    /** What the earliest of them does. */
+    short: "ends" | "leaves" | null;
+    /** How far before the end of the procedure it does so; None where that is not defined. */
+    short_m: number | null;
+    /** Why the legs may not be the whole procedure; the verdict cannot be "inside" beside one. */
+    doubts: string[];
+}
+
 /** One flight against a procedure. */
 export interface ProcedureFlown {
     track: string;
@@ -508,11 +524,15 @@ export interface ProcedureFlown {
     first_ns: number;
     /** Positions by what they are worth, from the first that was judged to the last. */
     n_status: Record<string, number>;
-    /** Positions judged, on legs with an RNP. */
+    /** Positions judged, on legs with an RNP; those that stray from the path are among them. */
     n: number;
     n_inside: number;
     n_inside_twice: number;
     n_without_rnp: number;
+    /** Whether a position beyond the end of the procedure follows, the track ends before it, or the aircraft has left the path. */
+    end: "reached" | "ends" | "leaves";
+    /** How far before the end of the procedure the last position near the path is; None beyond it, or where that is not defined. */
+    short_m: number | null;
     n_bound: number;
     n_bound_inside: number;
     n_bound_inside_twice: number;
@@ -632,6 +652,8 @@ export interface Verdict {
     n_approaches: number;
     /** Passes along a runway's centreline that stray, or end, before they are an approach; none of their epochs is judged. */
     n_unjudged_approaches: number;
+    /** What a procedure does not judge of the recording; None where none was followed. */
+    beside: BesideProcedure | null;
     /** Where no vertical bound judges: the largest known error of the heights with status ok; None where one does, or none is known. [m] */
     largest_height_error_m: number | null;
     /** Epochs with status ok or degraded whose bound is beyond its limit. */

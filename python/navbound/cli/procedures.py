@@ -94,7 +94,7 @@ def show_command(
             length_m=procedure.length_m,
             legs=list(procedure.legs),
             levels=list(procedure.levels),
-            notes=list(procedure.notes),
+            notes=[*procedure.notes, *procedure.doubts],
             vertical_path=heights.path,
             obstacle_surface=None if heights.surface is None else procedure_records.ObstacleSurface(**heights.surface._asdict()),
             vertical_words=list(heights.words),

@@ -6,11 +6,13 @@ import re
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from navbound import _core
 from navbound.errors import FormatError, InputError
 from navbound.procedures.findings import Finding, finding
 from navbound.procedures.legs import LevelOfService, Procedure, leg
+from navbound.procedures.whole import doubts
 from navbound.table.arguments import checked
 from navbound.units import METRES_PER_NM
 
@@ -187,6 +189,7 @@ class Database:
         ]
         selected_m = None if line is None else self._selected(index, entry, routes, line)
         rows, path = self._core.path(index, routes, missed, selected_m, defaults)
+        legs = tuple(leg(row) for row in rows)
         return Procedure(
             airport=entry.airport,
             kind=entry.kind,
@@ -194,10 +197,11 @@ class Database:
             transition=transition or "",
             missed=missed,
             line=line,
-            legs=tuple(leg(row) for row in rows),
+            legs=legs,
             levels=entry.levels,
             file=self.file,
             notes=(*self.notes, *between),
+            doubts=doubts(self, entry, self._legs_by_route(index), routes, legs, missed=missed),
             core=path,
         )
 
@@ -208,6 +212,9 @@ class Database:
     def threshold_heights_m(self, airport: str, runway: str) -> tuple[float | None, float | None]:
         """Elevation of a runway's threshold, and its height above the ellipsoid; None where the file has none [m]."""
         return self._core.elevations(airport, runway)[1:]
+
+    def _legs_by_route(self, index: int) -> list[list[dict[str, Any]]]:
+        return [self._core.path(index, [k], True, None, False)[0] for k in range(len(self.entries[index].routes))]
 
     def _why(self, number: int) -> str | None:
         return next((f"{r.field} {r.reason}" for r in self.refused if r.line == number), None)

@@ -11,6 +11,7 @@ import numpy as np
 from navbound import evaluation
 from navbound.errors import InputError
 from navbound.procedures.legs import Followed, Procedure
+from navbound.procedures.strays import ASTRAY, JUDGED, follow
 from navbound.table.arguments import checked
 from navbound.table.arrays import flatten
 from navbound.units import METRES_PER_NM
@@ -130,6 +131,7 @@ class Flight:
     n_inside: int
     n_inside_twice: int
     n_without_rnp: int
+    n_astray: int
     n_effective: float
     most_exceeding: float
 
@@ -138,6 +140,8 @@ class Flight:
         """What the recorded positions say, in one sentence."""
         if self.n == 0:
             return "not shown: no position on a leg with an RNP"
+        if self.n_inside == self.n and self.n_astray:
+            return f"recorded positions within RNP at every position judged, {self.n_astray} positions off the path could not be judged"
         if self.n_inside == self.n:
             return "recorded positions within RNP at every position judged"
         twice = "within twice RNP" if self.n_inside_twice == self.n else "not within twice RNP"
@@ -160,8 +164,8 @@ class Flight:
 def judge(procedure: Procedure, time_s: ArrayLike, lat_rad: ArrayLike, lon_rad: ArrayLike, limits: Limits | None = None) -> Flight:
     """Deviation of one flight from a procedure, leg by leg (ours).
 
-    Only established positions are judged; those in fly-by turns, where no single path is defined, are counted apart, and so are those on
-    legs without an RNP.
+    Judged is every position from the first established one to the end of the procedure, and what strays from the path there as well.
+    Those in fly-by turns, where no single path is defined, are counted apart, and so are those on legs without an RNP.
 
     Parameters
     ----------
@@ -179,14 +183,17 @@ def judge(procedure: Procedure, time_s: ArrayLike, lat_rad: ArrayLike, lon_rad: 
     InputError
         A time that does not rise, or a position that is not on the Earth.
     """
-    _, (time, _, _) = flatten(time_s=(time_s, ()), lat_rad=(lat_rad, ()), lon_rad=(lon_rad, ()))
-    followed = procedure.follow(time_s, lat_rad, lon_rad, limits)
-    return results(procedure, followed, time)
+    _, (time, lat, lon) = flatten(time_s=(time_s, ()), lat_rad=(lat_rad, ()), lon_rad=(lon_rad, ()))
+    followed, flights = follow(procedure, time, (lat, lon), limits)
+    due = np.zeros(time.size, dtype=np.bool_)
+    for flight in flights:
+        due[flight.first : flight.last + 1] = True
+    return results(procedure, followed, time, due)
 
 
-def results(procedure: Procedure, followed: Followed, time_s: NDArray[np.float64]) -> Flight:
-    """Results by leg of positions already followed."""
-    judged = followed.status == "ok"
+def results(procedure: Procedure, followed: Followed, time_s: NDArray[np.float64], due: NDArray[np.bool_]) -> Flight:
+    """Results by leg of positions already followed; `due` are those of a flight along the procedure."""
+    judged = np.isin(followed.status, JUDGED)
     rnp = np.array([x.rnp_m for x in procedure.legs] or [np.nan])[followed.leg]
     known = judged & np.isfinite(rnp)
     size = np.abs(followed.cross_m)
@@ -205,6 +212,7 @@ def results(procedure: Procedure, followed: Followed, time_s: NDArray[np.float64
         n_inside=int(inside.sum()),
         n_inside_twice=int(twice.sum()),
         n_without_rnp=int((judged & ~np.isfinite(rnp)).sum()),
+        n_astray=int((due & np.isin(followed.status, ASTRAY)).sum()),
         n_effective=effective,
         most_exceeding=open_share,
     )
@@ -219,7 +227,7 @@ def _leg(
 ) -> LegResult:
     leg = procedure.legs[index]
     here = followed.leg == index
-    on = here & (followed.status == "ok")
+    on = here & np.isin(followed.status, JUDGED)
     cross, time, along = followed.cross_m[on], time_s[on], followed.along_m[on]
     worst = int(np.argmax(np.abs(cross))) if cross.size else -1
     return LegResult(

@@ -161,7 +161,7 @@ class Followed(LegFeet):
     Attributes
     ----------
     status : ndarray of str
-        ``ok``, ``transition``, ``holding``, ``outside``, ``not_established``, ``off_path`` or ``missing``.
+        ``ok``, ``strayed``, ``transition``, ``holding``, ``outside``, ``not_established``, ``off_path`` or ``missing``.
     """
 
     status: NDArray[np.str_]
@@ -185,6 +185,8 @@ class Procedure:
         Its published lines of minima.
     notes : tuple of str
         What of the file is not used.
+    doubts : tuple of str
+        Why the legs may not be the whole procedure; beside one no flight is "inside".
     """
 
     airport: str
@@ -197,6 +199,7 @@ class Procedure:
     levels: tuple[LevelOfService, ...]
     file: str
     notes: tuple[str, ...]
+    doubts: tuple[str, ...]
     core: _core.ProcedurePath
 
     @property
@@ -234,7 +237,8 @@ class Procedure:
         """Feet of one flight on its active legs.
 
         The first leg is the nearest whose course agrees with the track; from there the legs are walked forwards. A flight is judged from
-        where it is established. The numbers of `limits` are INFERRED.
+        where it is established to the end of the procedure; what leaves the path in between is ``strayed``, with its distance from the
+        nearest leg. The numbers of `limits` are INFERRED.
 
         Parameters
         ----------
@@ -250,10 +254,17 @@ class Procedure:
         InputError
             A time that does not rise, or a position that is not on the Earth.
         """
+        from navbound.procedures.strays import follow  # noqa: PLC0415
+
+        shape, (time, lat, lon) = flatten(time_s=(time_s, ()), lat_rad=(lat_rad, ()), lon_rad=(lon_rad, ()))
+        followed, _ = follow(self, time, (lat, lon), limits)
+        return Followed(**{f.name: getattr(followed, f.name).reshape(shape) for f in fields(Followed)})
+
+    def followed(
+        self, time_s: NDArray[np.float64], lat_rad: NDArray[np.float64], lon_rad: NDArray[np.float64], limits: Limits | None = None
+    ) -> Followed:
+        """The same without what strays: every position by itself, as the core follows it."""
         from navbound.procedures.flight import Limits  # noqa: PLC0415
 
-        used = limits or Limits()
-        shape, (time, lat, lon) = flatten(time_s=(time_s, ()), lat_rad=(lat_rad, ()), lon_rad=(lon_rad, ()))
-        row = self.core.follow(time, lat, lon, [(x.rnp_m, x.fly_over) for x in self.legs], used.values)
-        status = _STATUS[row.pop("status")].reshape(shape)
-        return Followed(status=status, **{name: values.reshape(shape) for name, values in row.items()})
+        row = self.core.follow(time_s, lat_rad, lon_rad, [(x.rnp_m, x.fly_over) for x in self.legs], (limits or Limits()).values)
+        return Followed(status=_STATUS[row.pop("status")], **row)

@@ -13,12 +13,12 @@ import polars as pl
 from navbound.records.truth import TruthDoubts
 
 if TYPE_CHECKING:
-    from navbound.records.procedure import ProcedureFlown
+    from navbound.records.procedure import BesideProcedure, ProcedureFlown
     from navbound.records.run import CovarianceOrigin, CrossTrack, EventSummary, InputFile, Rejection, Waypoint
     from navbound.storage.frames import Frames
 
 LEFT_OUT = {"track": pl.String, "time_ns": pl.Int64}
-"""Rows of a recording that cannot be judged: which track, and when (null where not even the time is known)."""
+"""Rows of a recording that cannot be judged, and ends of procedures that were due: which track, and when (null where nobody knows)."""
 
 Operation = Literal["en-route", "approach", "ground"]
 """What kind of operation is flown: nobody works it out from the size of a requirement. ``ground``: landing roll and taxiing, where
@@ -56,6 +56,8 @@ class Material:
         ``track`` and ``time_ns`` of recorded rows that cannot be judged and are no epochs: they are expected all the same.
     n_approaches, n_unjudged_approaches : int
         Approaches to runways, and passes along a runway's centreline that are none and are not judged.
+    beside : BesideProcedure, optional
+        What a procedure does not judge of the recording.
     frames : Frames, optional
         The epochs of a table that is too large for memory, in pieces on the disk; `epochs` is then without rows.
     with_levels : set of str
@@ -94,6 +96,7 @@ class Material:
     left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
     n_approaches: int = 0
     n_unjudged_approaches: int = 0
+    beside: BesideProcedure | None = None
     frames: Frames | None = None
     with_levels: frozenset[str] = frozenset()
     unread: list[str] = field(default_factory=list)

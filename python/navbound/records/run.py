@@ -14,7 +14,7 @@ from navbound.records.faults import FaultSummary
 from navbound.records.groups import DeviationBand, DeviationGroup, SatelliteSummary
 from navbound.records.material import Operation
 from navbound.records.performance import Performance
-from navbound.records.procedure import ProcedureFlown
+from navbound.records.procedure import BesideProcedure, ProcedureFlown
 from navbound.records.verdict import LEAST_SHARE, BeliefState, VerdictId
 
 
@@ -131,6 +131,8 @@ class Verdict(Record):
     """Approaches to runways that were judged."""
     n_unjudged_approaches: int = 0
     """Passes along a runway's centreline that stray, or end, before they are an approach; none of their epochs is judged."""
+    beside: BesideProcedure | None = None
+    """What a procedure does not judge of the recording; None where none was followed."""
     largest_height_error_m: float | None = None
     """Where no vertical bound judges: the largest known error of the heights with status ok; None where one does, or none is known. [m]"""
     n_outside: int = 0

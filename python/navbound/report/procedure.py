@@ -100,7 +100,7 @@ def notes(procedure: Procedure, findings: list[Finding], heights: Heights) -> li
         if x.rnp_coded_m is not None
     ]
     warnings += [f"Line {f.line}, leg {f.sequence}: {f.words}." for f in findings]
-    return notes + [Note(text, is_warning=True) for text in (*warnings, *procedure.notes)]
+    return notes + [Note(text, is_warning=True) for text in (*warnings, *procedure.notes, *procedure.doubts)]
 
 
 def page(procedure: Procedure, findings: list[Finding], heights: Heights) -> str:

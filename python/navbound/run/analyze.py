@@ -197,6 +197,7 @@ def material(
         rejected=rejected,
         n_approaches=route.n_approaches,
         n_unjudged_approaches=route.n_unjudged,
+        beside=route.beside,
         left_out=pl.concat([_on_path(flights.divide_left_out(lost), _ends(epochs), route), route.left_out]),
         cross_track=route.cross_track,
         procedures=route.flights,

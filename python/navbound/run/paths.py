@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from navbound.read.approaches import Gates, Landings
     from navbound.read.routes import Route
     from navbound.records.material import Operation
-    from navbound.records.procedure import ProcedureFlown
+    from navbound.records.procedure import BesideProcedure, ProcedureFlown
     from navbound.records.run import CrossTrack, InputFile
     from navbound.run.pieces import Way
     from navbound.storage.frames import Frames
@@ -44,6 +44,7 @@ class OnPath:
     due: dict[str, int] = field(default_factory=dict)
     n_approaches: int = 0
     n_unjudged: int = 0
+    beside: BesideProcedure | None = None
     left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
     operation: Operation = "en-route"
     flights: list[ProcedureFlown] = field(default_factory=list)

@@ -80,6 +80,24 @@ class LegFlown(Record):
     worst_along_m: float | None
 
 
+class BesideProcedure(Record):
+    """What a procedure does not judge of a recording, and what it lacks itself."""
+
+    n_recorded: int
+    """Positions of the recording."""
+    n_status: dict[str, int]
+    """Of these, the positions that are no part of a flight along the procedure (before and after it, in turns, beside holds), by what they
+    are."""
+    n_short: int = 0
+    """Flights that end, or leave the path, before the end of the procedure."""
+    short: Literal["ends", "leaves"] | None = None
+    """What the earliest of them does."""
+    short_m: float | None = None
+    """How far before the end of the procedure it does so; None where that is not defined."""
+    doubts: list[str] = Field(default_factory=list)
+    """Why the legs may not be the whole procedure; the verdict cannot be "inside" beside one."""
+
+
 class ProcedureFlown(Record):
     """One flight against a procedure."""
 
@@ -91,10 +109,14 @@ class ProcedureFlown(Record):
     n_status: dict[str, int]
     """Positions by what they are worth, from the first that was judged to the last."""
     n: int
-    """Positions judged, on legs with an RNP."""
+    """Positions judged, on legs with an RNP; those that stray from the path are among them."""
     n_inside: int
     n_inside_twice: int
     n_without_rnp: int
+    end: Literal["reached", "ends", "leaves"] = "reached"
+    """Whether a position beyond the end of the procedure follows, the track ends before it, or the aircraft has left the path."""
+    short_m: float | None = None
+    """How far before the end of the procedure the last position near the path is; None beyond it, or where that is not defined."""
     n_bound: int = 0
     n_bound_inside: int = 0
     n_bound_inside_twice: int = 0

@@ -203,7 +203,7 @@ def _follow(file: str | Path, whole: Way, procedure: Procedure, key: str) -> Non
     if unknown:
         named = ", ".join(leg.fix or leg.terminator for leg in unknown)
         whole.words.append(f"{len(unknown)} legs of {name} have no RNP ({named}): they are not judged.")
-    whole.words += procedure.notes
+    whole.words += [*procedure.notes, *procedure.doubts]
 
 
 def _join(whole: Way, fix: str, lat_rad: float, lon_rad: float, name: str) -> None:

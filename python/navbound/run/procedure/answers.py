@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from navbound.procedures import Flight, Procedure
+    from navbound.procedures.strays import Stretch
     from navbound.records.procedure import SettingResult
     from navbound.run.directory import Run
 
@@ -28,7 +29,7 @@ METRES_PER_HPA = 8.3
 """Of an altimeter near the sea, for words alone. [m/hPa]"""
 
 
-def flown_record(track: str, time_ns: int, flight: Flight, procedure: Procedure) -> ProcedureFlown:
+def flown_record(track: str, time_ns: int, flight: Flight, procedure: Procedure, along: Stretch) -> ProcedureFlown:
     """What the recorded positions of one flight say; the rest is added when the epochs are judged.
 
     Parameters
@@ -41,6 +42,8 @@ def flown_record(track: str, time_ns: int, flight: Flight, procedure: Procedure)
         Results of :func:`navbound.procedures.flight.results`.
     procedure : Procedure
         What was followed.
+    along : Stretch
+        How the flight ends.
     """
 
     def at_ns(time_s: float) -> int:
@@ -81,6 +84,8 @@ def flown_record(track: str, time_ns: int, flight: Flight, procedure: Procedure)
         n_inside=flight.n_inside,
         n_inside_twice=flight.n_inside_twice,
         n_without_rnp=flight.n_without_rnp,
+        end=along.end,
+        short_m=None if along.end == "reached" else _known(along.short_m),
         n_effective=flight.n_effective,
         most_exceeding=_known(flight.most_exceeding),
         legs=legs,

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+import math
+from collections import Counter
+from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,24 +14,32 @@ from navbound.errors import InputError
 from navbound.procedures.flight import results, rnp_words
 from navbound.procedures.legs import Followed
 from navbound.procedures.names import as_sentence
+from navbound.procedures.strays import ASTRAY, JUDGED, follow
 from navbound.read.approaches import statistics
 from navbound.read.checks.repeats import left_out
+from navbound.records.material import LEFT_OUT
+from navbound.records.procedure import BesideProcedure
 from navbound.records.run import Waypoint
+from navbound.rnp import Monitor
+from navbound.rnp.exposure import LONGEST_STEP_S
 from navbound.run.procedure.answers import flown_record
 from navbound.run.procedure.heights import height_results, heights, setting_result
 from navbound.time import utc_text
+from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from navbound.procedures import Flight, Procedure
+    from navbound.procedures.strays import Stretch
     from navbound.records.material import Operation
     from navbound.records.procedure import ProcedureFlown
     from navbound.records.run import CrossTrack, InputFile
     from navbound.run.procedure.flown import Flown
 
-NEXT_FLIGHT_S = 600.0
-"""After so long without a judged position another flight begins (ours). [s]"""
+
+SHORT_M = 0.1 * METRES_PER_NM
+"""A flight whose last position is so far before the end of its procedure ends before it (ours). [m]"""
 
 
 @dataclass(frozen=True)
@@ -49,13 +59,15 @@ class OnProcedure:
     n_approaches: int = 0
     n_unjudged: int = 0
     operation: Operation = "approach"
+    beside: BesideProcedure | None = None
 
 
 def on_procedure(epochs: pl.DataFrame, flown: Flown) -> OnProcedure:
     """Follow every track along a procedure.
 
-    Epochs before it is established, off the path, in fly-by turns and beside a hold are no part of the verdict and are counted. Epochs on a
-    leg without an RNP are expected and cannot be judged.
+    Every epoch from where a flight is established to the end of the procedure is expected. Those off the path in between have their
+    distance from it as deviation. Those before and after, in fly-by turns and beside a hold are no part of the verdict and are counted.
+    Epochs on a leg without an RNP or a path are expected and cannot be judged.
 
     Raises
     ------
@@ -64,31 +76,34 @@ def on_procedure(epochs: pl.DataFrame, flown: Flown) -> OnProcedure:
     """
     loaded = flown.load()
     procedure = loaded.procedure
-    rnp = np.array([x.rnp_m for x in procedure.legs])
-    judged, unknown, words, tracks = list[pl.DataFrame](), list[pl.DataFrame](), list[str](), dict[str, str]()
+    judged, unknown, words, tracks, due = list[pl.DataFrame](), list[pl.DataFrame](), list[str](), dict[str, str](), dict[str, int]()
     flights: list[ProcedureFlown] = []
+    n_beside = Counter[str]()
     for group in epochs.partition_by("track", maintain_order=True):
         time_s = (group["time_ns"] - group["time_ns"][0]).to_numpy() * 1e-9
         lat, lon = (group[name].cast(pl.Float64).fill_null(float("nan")).to_numpy() for name in ("est_lat_rad", "est_lon_rad"))
-        followed = procedure.follow(time_s, lat, lon)
-        height = heights(group, followed, loaded, flown)
-        rows = _columns(group, procedure, followed, rnp).with_columns(height.columns)
+        followed, along = follow(procedure, time_s, (lat, lon))
+        height = heights(group, _on_legs(followed), loaded, flown)
+        rows = _columns(group, procedure, followed).with_columns(height.columns)
+        expected = _expected(followed, along)
+        n_beside.update(followed.status[~expected].tolist())
         words += [_status_words(str(group["track"][0]), followed), *([height.words] if height.words else [])]
-        for number, (first, last) in enumerate(_flights(followed, time_s), 1):
-            inside = slice(first, last + 1)
-            flight = results(procedure, _part(followed, inside), time_s[inside])
+        for number, each in enumerate(along, 1):
+            inside = slice(each.first, each.last + 1)
+            flight = results(procedure, _part(followed, inside), time_s[inside], expected[inside])
             track = f"{group['track'][0]} {procedure.name}" + (f" {number}" if number > 1 else "")
             part = rows[inside].with_columns(pl.lit(track).alias("track"))
-            ok = followed.status[inside] == "ok"
-            known = ok & np.isfinite(part["rnp_m"].to_numpy())
-            unknown.append(left_out(part.filter(pl.Series(ok & ~known))))
+            known = np.isin(followed.status[inside], JUDGED) & np.isfinite(part["rnp_m"].to_numpy())
+            unknown.append(left_out(part.filter(pl.Series(expected[inside] & ~known))))
             words.append(_words(track, group["time_ns"][0], flight))
             if known.any():
                 judged.append(part.filter(pl.Series(known)))
                 tracks[track] = str(group["track"][0])
-                record = flown_record(track, group["time_ns"][0], flight, procedure)
+                due[track] = int(part["time_ns"][-1]) + round(each.due_s * 1e9)
+                unknown.append(_not_flown(track, due[track], each, _period_s(time_s[inside])))
+                record = flown_record(track, group["time_ns"][0], flight, procedure, each)
                 of_heights = [] if loaded.path is None else height_results(judged[-1], loaded.path, height.altitude_m[inside][known])
-                tested = setting_result(time_s, float(time_s[last]), height, loaded)
+                tested = setting_result(time_s, float(time_s[each.last]), height, loaded)
                 flights.append(record.model_copy(update={"heights": of_heights, "setting": tested}))
     if not judged:
         domain = f"procedures that a track follows: no epoch is established on a leg of {procedure.name} with an RNP"
@@ -97,7 +112,7 @@ def on_procedure(epochs: pl.DataFrame, flown: Flown) -> OnProcedure:
     marks = [(x.fix, x.lat_rad, x.lon_rad) for x in procedure.legs if x.lat_rad is not None and x.lon_rad is not None]
     return OnProcedure(
         epochs=table,
-        left_out=pl.concat([x for x in unknown if x["track"].is_in(list(tracks)).all()]),
+        left_out=pl.concat(unknown),
         words=[
             _path_words(procedure),
             as_sentence(loaded.words),
@@ -113,25 +128,55 @@ def on_procedure(epochs: pl.DataFrame, flown: Flown) -> OnProcedure:
         ],
         flights=flights,
         tracks=tracks,
+        due=due,
         operation="approach" if procedure.kind == "approach" else "en-route",
+        beside=_beside(epochs.height, n_beside, flights, procedure),
     )
 
 
-def _flights(followed: Followed, time_s: NDArray[np.float64]) -> list[tuple[int, int]]:
-    """First and last judged position of each flight: one ends where the aircraft leaves the path, or after a long gap."""
-    ok = np.flatnonzero(followed.status == "ok")
-    if not ok.size:
-        return []
-    n_off = np.cumsum(followed.status == "off_path")
-    begins = np.flatnonzero((np.diff(n_off[ok]) > 0) | (np.diff(time_s[ok]) > NEXT_FLIGHT_S)) + 1
-    return [(int(piece[0]), int(piece[-1])) for piece in np.split(ok, begins)]
+def _beside(n_recorded: int, n_status: Counter[str], flights: list[ProcedureFlown], procedure: Procedure) -> BesideProcedure:
+    """What is not judged, and the earliest end of a flight before that of the procedure."""
+    short = [each for each in flights if each.end != "reached" and not (each.short_m is not None and each.short_m < SHORT_M)]
+    earliest = max(short, key=lambda each: math.inf if each.short_m is None else each.short_m, default=None)
+    return BesideProcedure(
+        n_recorded=n_recorded,
+        n_status=dict(n_status.most_common()),
+        n_short=len(short),
+        short=None if earliest is None or earliest.end == "reached" else earliest.end,
+        short_m=None if earliest is None else earliest.short_m,
+        doubts=list(procedure.doubts),
+    )
+
+
+def _expected(followed: Followed, along: list[Stretch]) -> NDArray[np.bool_]:
+    """Positions that a verdict has to judge: those of a flight along the procedure, but for its turns and holds."""
+    expected = np.zeros(followed.status.size, dtype=np.bool_)
+    for each in along:
+        expected[each.first : each.last + 1] = True
+    return expected & np.isin(followed.status, (*JUDGED, *ASTRAY, "missing"))
+
+
+def _on_legs(followed: Followed) -> Followed:
+    """The same without feet of what strays: it has no height to keep."""
+    return replace(followed, leg=np.where(followed.status == "strayed", -1, followed.leg))
+
+
+def _period_s(time_s: NDArray[np.float64]) -> float:
+    return float(np.median(np.diff(time_s))) if time_s.size > 1 else LONGEST_STEP_S
+
+
+def _not_flown(track: str, end_ns: int, each: Stretch, period_s: float) -> pl.DataFrame:
+    """The end of the procedure as an epoch that is expected, where it was due later than a gap may last that is none."""
+    stale_s = Monitor(sample_period_s=min(period_s, LONGEST_STEP_S), time_to_alert_s=math.inf).stale_after_s
+    return pl.DataFrame([{"track": track, "time_ns": end_ns}] if each.due_s > stale_s else [], schema=LEFT_OUT)
 
 
 def _part(followed: Followed, rows: slice) -> Followed:
     return Followed(**{f.name: getattr(followed, f.name)[rows] for f in fields(Followed)})
 
 
-def _columns(group: pl.DataFrame, procedure: Procedure, feet: Followed, rnp: NDArray[np.float64]) -> pl.DataFrame:
+def _columns(group: pl.DataFrame, procedure: Procedure, feet: Followed) -> pl.DataFrame:
+    rnp = np.array([x.rnp_m for x in procedure.legs])
     names = pl.Series([x.fix or x.terminator for x in procedure.legs])
     phases = pl.Series([x.part for x in procedure.legs])
     index = pl.Series(np.maximum(feet.leg, 0))
@@ -160,7 +205,7 @@ def _path_words(procedure: Procedure) -> str:
 def _status_words(track: str, followed: Followed) -> str:
     names, counts = np.unique(followed.status, return_counts=True)
     shown = ", ".join(f"{n} {name.replace('_', ' ')}" for name, n in zip(names.tolist(), counts.tolist(), strict=True))
-    return f"Positions of {track}: {shown}. Only those that are ok are judged."
+    return f"Positions of {track}: {shown}. Only those that are ok or strayed are judged."
 
 
 def _words(track: str, time_ns: int, flight: Flight) -> str:

@@ -96,6 +96,7 @@ def verdict_of(
         n_apart=0 if known.doubts.neighbours is None else known.doubts.neighbours.n,
         truth_lost=material.truth_doubts.n > 0 and known.n_truth <= material.truth_doubts.n,
         position_doubted=bool(material.position_doubts),
+        path_doubted=material.beside is not None and bool(material.beside.doubts),
         n_approaches=material.n_approaches,
         n_unjudged_approaches=material.n_unjudged_approaches,
     )
@@ -118,6 +119,7 @@ def verdict_of(
         n_reason=known.n_reason,
         n_approaches=facts.n_approaches,
         n_unjudged_approaches=facts.n_unjudged_approaches,
+        beside=material.beside,
         n_outside=facts.n_outside,
         n_known_beyond=facts.n_known_beyond,
         n_stated_beyond=known.doubts.n_stated_beyond,

@@ -10,6 +10,7 @@ from navbound import _core
 from navbound.read.checks.statements import speaks_of_accuracy, speaks_of_level
 from navbound.read.tables.columns import declare
 from navbound.run.verdict.numbers import length, level, share
+from navbound.run.verdict.procedure import beside_procedure_words, incomplete_words
 from navbound.run.verdict.rule import FEW_EPOCHS, has_approaches
 from navbound.run.verdict.words import COPIED, contradicted_words, covered_words, refuted_words, short_words, truth_words
 from navbound.status import REASONS
@@ -48,6 +49,7 @@ def verdict_words(
         parts += _reasons(verdict)
     n_before_worst = len(parts)
     parts += [f"{doubt}." for doubt in verdict.position_doubts]
+    parts += incomplete_words(verdict.beside)
     if verdict.n_implausible:
         parts.append(
             f"{verdict.n_implausible} epochs cannot be true (see their reasons); what looks right beside them may be wrong as well."
@@ -141,7 +143,7 @@ def _thin(verdict: Verdict) -> str:
 
 def _shares(verdict: Verdict) -> str:
     """What became of all epochs."""
-    unjudged = _unjudged_approaches(verdict)
+    unjudged = f"{_unjudged_approaches(verdict)}{beside_procedure_words(verdict.beside)}"
     if verdict.n_epochs == 0:
         return f"there is no epoch{unjudged}"
     if verdict.n_judged == verdict.n_epochs:

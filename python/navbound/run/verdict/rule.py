@@ -63,6 +63,8 @@ class TrackFacts:
         A truth was there, and at half of its epochs or more it cannot be one.
     position_doubted : bool
         Positions may not be what they are read as: their unit, or their motion against the stated speed.
+    path_doubted : bool
+        The path may not be the whole of what was to be flown.
     n_approaches, n_unjudged_approaches : int
         Approaches that were judged, and passes along a centreline that strayed before they were one.
     """
@@ -79,6 +81,7 @@ class TrackFacts:
     n_without_level: int = 0
     truth_lost: bool = False
     position_doubted: bool = False
+    path_doubted: bool = False
     n_apart: int = 0
     n_approaches: int = 0
     n_unjudged_approaches: int = 0
@@ -92,9 +95,8 @@ def of_tracks(facts: TrackFacts) -> VerdictId:
         return "nothing_judged"
     if facts.n_outside or facts.n_beyond_alert_limit:
         return "outside"
-    doubts = (
-        facts.n_implausible + facts.n_stated_against + facts.n_without_level + facts.n_apart + facts.truth_lost + facts.position_doubted
-    )
+    doubts = facts.n_implausible + facts.n_stated_against + facts.n_without_level + facts.n_apart
+    doubts += facts.truth_lost + facts.position_doubted + facts.path_doubted
     judged = facts.n_judged >= LEAST_SHARE * facts.n_epochs and has_approaches(facts.n_approaches, facts.n_unjudged_approaches)
     return "not_shown" if doubts or facts.belief in UNSUPPORTED or not judged else "inside"
 
