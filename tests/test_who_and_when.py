@@ -52,9 +52,7 @@ def reasons(run: Run) -> set[str | None]:
     [(0.5, None, "inside"), (1.0, None, "inside"), (1.5, "position_held", "nothing_judged"), (5.0, "position_stale", "nothing_judged")],
 )
 @pytest.mark.parametrize("name", ["last_position", "lastposupdate", "time_position"])
-def test_a_position_that_is_said_to_be_old_is_as_one_that_is_held(
-    tmp_path: Path, name: str, age_s: float, reason: str | None, verdict: str
-) -> None:
+def test_an_old_position_is_as_one_that_repeats(tmp_path: Path, name: str, age_s: float, reason: str | None, verdict: str) -> None:
     run = analyzed(tmp_path, rows(**column(name, lambda k: 1_700_000_000 + k - age_s)))
     assert (reasons(run), run.summary.verdict.id) == ({reason}, verdict)
 
@@ -65,7 +63,7 @@ def test_an_age_of_a_position_dates_it(tmp_path: Path, name: str, age_s: float, 
     assert reasons(analyzed(tmp_path, rows(**column(name, age_s)))) == {reason}
 
 
-def test_the_way_in_the_age_of_a_position_is_said(tmp_path: Path) -> None:
+def test_the_words_state_the_way_in_the_age_of_a_position(tmp_path: Path) -> None:
     """0.8 s at 250 m/s are 200 m."""
     (words,) = (a for a in analyzed(tmp_path, rows(seen_pos=0.8)).summary.assumptions if a.startswith("Plausibility"))
     assert "up to 0.8 s old, in which the aircraft moved up to 200 m" in words

@@ -158,8 +158,8 @@ class Checker:
             track, reports = self._track(group), _reports(group)
             if not seen:
                 track.see(reports)
-            found = track.judge(reports, _speeds_after(name, after))
-            judged.append(found | {"finding": self._dated(found["finding"], reports)})
+            findings = track.judge(reports, _speeds_after(name, after))
+            judged.append(findings | {"finding": self._dated(findings["finding"], reports)})
             # Rows are in the order of tracks: only the last one may go on.
             self._tracks = {name: track} | {k: v for k, v in self._tracks.items() if k > name}
         names = ("finding", "step_m", "too_fast_mps", "speed_doubted")
