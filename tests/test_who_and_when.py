@@ -206,3 +206,81 @@ def test_a_column_of_durations_is_refused_by_its_name(tmp_path: Path) -> None:
     table.write_parquet(tmp_path / "a.parquet")
     with pytest.raises(FormatError, match="time_s: holds Duration"):
         navbound.analyze(tmp_path / "a.parquet")
+
+
+def stands_from_30(**added: Any) -> list[dict[str, Any]]:
+    """Flies for 30 s and stands with a metre of noise then, under a reported speed of 250 m/s."""
+    noise = (0.0, 1.3, -0.9, 0.4, -1.1)
+    return rows(240, lat_deg=lambda k: 48.0 + (min(k, 30) * SPEED_MPS + noise[k % 5]) * DEG_PER_M, **added)
+
+
+@pytest.mark.parametrize("every", [2, 5, 15, 19])
+def test_an_empty_speed_now_and_then_turns_no_rule_off(tmp_path: Path, every: int) -> None:
+    run = analyzed(tmp_path, stands_from_30(ground_speed_mps=lambda k: None if k % every == 1 else SPEED_MPS))
+    assert run.summary.verdict.id != "inside"
+    assert any("travel less far" in each for each in run.summary.verdict.position_doubts)
+    assert "position_stale" in reasons(run)
+
+
+def test_an_empty_speed_before_a_stop_that_nobody_flew_explains_nothing(tmp_path: Path) -> None:
+    speeds = stands_from_30(ground_speed_mps=lambda k: SPEED_MPS if k < 23 else None if k < 30 else 0.0)
+    assert "position_stale" in reasons(analyzed(tmp_path, speeds))
+
+
+def mirrored(name: str, *, wrong: bool, step_s: int = 1, **added: Any) -> list[dict[str, Any]]:
+    sign = -1.0 if wrong else 1.0
+    values: dict[str, Any] = {"hex": name, "track_deg": 0.0, "lat_deg": lambda k: 48.0 + sign * k * SPEED_MPS * DEG_PER_M} | added
+    return rows(900, **values)[::step_s]
+
+
+@pytest.mark.parametrize("n_right", [0, 5, 11])
+def test_tracks_that_agree_hide_none_that_does_not(tmp_path: Path, n_right: int) -> None:
+    right = [row for n in range(n_right) for row in mirrored(f"39bd{n:02x}", wrong=False)]
+    verdict = analyzed(tmp_path, right + mirrored("3c6444", wrong=True)).summary.verdict
+    assert verdict.id == "not_shown"
+    assert all("3c6444" in each for each in verdict.position_doubts) or not n_right
+    if n_right == 5:
+        assert analyzed(tmp_path, right).summary.verdict.id == "inside"
+
+
+@pytest.mark.parametrize(
+    "how",
+    [
+        {"track_deg": lambda k: None if k % 60 == 7 else 0.0},
+        {"ground_speed_mps": lambda k: None if k % 2 else SPEED_MPS},
+        {"ground_speed_mps": None},
+        {"step_s": 12},
+    ],
+)
+def test_a_direction_that_contradicts_shows_with_empty_fields_and_long_steps_too(tmp_path: Path, how: dict[str, Any]) -> None:
+    assert analyzed(tmp_path, mirrored("3c6444", wrong=True, **how)).summary.verdict.id != "inside"
+    right = analyzed(tmp_path, mirrored("3c6444", wrong=False, **how)).summary.verdict
+    assert right.position_doubts == []
+
+
+def test_ten_minutes_of_an_hour_in_which_a_track_is_led_aside_are_doubted(tmp_path: Path) -> None:
+    aside = rows(3600, track_deg=0.0, lon_deg=lambda k: 2.0 + 30.0 * min(max(k - 900, 0), 600) * DEG_PER_M / 0.66)
+    assert any("positions end elsewhere" in each for each in analyzed(tmp_path, aside).summary.verdict.position_doubts)
+
+
+@pytest.mark.parametrize("twin", ["ABC123", "0xabc123", "0xABC123"])
+def test_an_address_is_one_in_any_writing(tmp_path: Path, twin: str) -> None:
+    run = analyzed(tmp_path, [row for k in range(N) for row in rows(1, begin_s=k, hex="abc123" if k % 2 else twin)])
+    assert run.epochs["track"].unique().to_list() == ["abc123"]
+
+
+def test_a_callsign_is_one_in_any_writing(tmp_path: Path) -> None:
+    run = analyzed(tmp_path, rows(callsign=lambda k: ("DLH1", "dlh1", "DLH1____", " DLH1 ")[k % 4]))
+    assert run.epochs["track"].unique().to_list() == ["DLH1"]
+
+
+@pytest.mark.parametrize(
+    ("added", "named"),
+    [
+        ({"last_position": 1_700_000_000, "time_position": 1_699_999_000}, "time_position"),
+        ({"seen_pos": -30.0}, "seen_pos (-30.0)"),
+        ({"seen_pos_ms": 30000}, "seen_pos_ms"),
+    ],
+)
+def test_an_age_that_is_not_understood_is_named(tmp_path: Path, added: dict[str, Any], named: str) -> None:
+    assert named in analyzed(tmp_path, rows(**added)).summary.verdict.unread

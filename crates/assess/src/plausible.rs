@@ -6,7 +6,7 @@
 mod repeats;
 
 use navbound_core::frame::EcefPosition;
-use navbound_core::monitor::motion::{Between, Gone, repeated, sea_level, within};
+use navbound_core::monitor::motion::{Between, Gone, LastSpeed, repeated, sea_level, within};
 use navbound_core::monitor::way::Way;
 use navbound_core::quantity::{GpsTime, OutOfDomain};
 
@@ -155,6 +155,7 @@ pub struct Track {
     way: Way,
     repeats: Repeats,
     gone: Gone,
+    speed: LastSpeed,
     /// Speeds of the reports before \[m/s\]; NaN where none was reported.
     before_mps: [f64; SPEEDS_BESIDE],
 }
@@ -179,6 +180,7 @@ impl Track {
             way: Way::default(),
             repeats: Repeats::default(),
             gone: Gone::default(),
+            speed: LastSpeed::default(),
             before_mps: [f64::NAN; SPEEDS_BESIDE],
         }
     }
@@ -193,7 +195,8 @@ impl Track {
             let later = reports[index + 1..].iter().map(|r| r.speed_mps).chain(after_mps.iter().copied());
             let usual_mps = self.usual_speed(reported.speed_mps, later.take(SPEEDS_BESIDE));
             let doubted = reported.speed_mps > self.limits.speed_factor * usual_mps + self.limits.speed_margin_mps;
-            let report = &if doubted { Report { speed_mps: usual_mps, ..*reported } } else { *reported };
+            let believed = if doubted { Report { speed_mps: usual_mps, ..*reported } } else { *reported };
+            let report = &self.speed.standing_in(&believed, &self.limits);
             judged.push(self.step(report, doubted).map_err(|refusal| (index, refusal))?);
             self.before_mps.rotate_left(1);
             self.before_mps[SPEEDS_BESIDE - 1] = reported.speed_mps;

@@ -4,7 +4,7 @@ use crate::codec::{Damaged, Reader, Writer};
 use crate::order::Waiting;
 use crate::output::Kind;
 use navbound_core::judge::{self, Judge};
-use navbound_core::monitor::motion::{Fall, Gone, Motion, Owed, Report};
+use navbound_core::monitor::motion::{Fall, Gone, LastSpeed, Motion, Owed, Report};
 use navbound_core::monitor::neighbours::{Height, Neighbours, Place};
 use navbound_core::monitor::way::{Mark, Way};
 use navbound_core::quantity::{GpsTime, Metres};
@@ -99,6 +99,10 @@ impl Track {
         for each in self.motion.way.marks {
             to.option(each, mark);
         }
+        to.option(self.motion.speed.reported, |to, (time, speed_mps)| {
+            to.i64(time.nanoseconds());
+            to.f64(speed_mps);
+        });
         for place in self.neighbours.last {
             to.option(place, |to, place| {
                 to.i64(place.time.nanoseconds());
@@ -146,7 +150,8 @@ impl Track {
         for each in &mut way.marks {
             *each = from.option(read_mark)?;
         }
-        let motion = Motion { last: last_different, anchor, jumped, gone, height, way };
+        let reported = from.option(|from| Ok((GpsTime::from_nanoseconds(from.i64()?), from.f64()?)))?;
+        let motion = Motion { last: last_different, anchor, jumped, gone, height, way, speed: LastSpeed { reported } };
         let place = |from: &mut Reader<'_>| {
             let time = GpsTime::from_nanoseconds(from.i64()?);
             Ok(Place { time, lat_rad: from.f64()?, lon_rad: from.f64()?, variance_m2: from.f64()? })

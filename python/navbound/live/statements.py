@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from navbound.read.checks.statements import BARE_LENGTHS, KINDS, kind_of, speaks_of_integrity
-from navbound.read.tables.columns import QUANTITIES, STATED_QUANTITIES, UNITS
+from navbound.read.tables.columns import POSITION_TIME_NAMES, QUANTITIES, STATED_QUANTITIES, UNITS
 from navbound.table.columns import COVARIANCE
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ Kinds = list[tuple[list[str], list[str], float | None]]
 def for_core() -> tuple[Kinds, list[str]]:
     """Kinds as names, words that say nothing against the position and the largest such number; and words of ``nav_mode`` against it."""
     judged = [q for q in QUANTITIES if q.name in _JUDGED] + [q for q in STATED_QUANTITIES if q.name != "alert"]
-    named = [*_CONTRACT, *sorted(BARE_LENGTHS), *(name for q in judged for name in (q.name, *q.aliases))]
+    named = [*_CONTRACT, *POSITION_TIME_NAMES, *sorted(BARE_LENGTHS), *(name for q in judged for name in (q.name, *q.aliases))]
     lengths = {name.removesuffix("_m") for q in judged if q.si == "m" for name in (q.name, *q.aliases)} | BARE_LENGTHS
     kinds: Kinds = [([*named, *(f"{name}_{unit}" for name in sorted(lengths) for unit in UNITS["m"])], [], None)]
     for kind in KINDS:

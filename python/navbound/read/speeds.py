@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -35,16 +36,57 @@ between rows leave as much. Provenance: ours. [1]"""
 _DEVIATIONS = 6.0
 """Noise of two positions, in standard deviations of the covariance. Provenance: ours."""
 _LEAST, _LEAST_SHARE = 3, 0.2
-"""Windows, and share of them, that must contradict; of fewer windows all. Provenance: ours."""
+"""Windows of a track, and share of them, that must contradict; of fewer windows all of a recording. Provenance: ours."""
+_RUN = 5
+"""Windows on end that must contradict where the share is smaller. Provenance: ours."""
+
+
+@dataclass
+class _Minutes:
+    """Windows of one track that were compared, those that contradict, and as many of these on end as there are."""
+
+    n: int = 0
+    n_false: int = 0
+    run: int = 0
+    longest: int = 0
+
+    def count(self, *, false: bool) -> None:
+        self.n += 1
+        self.n_false += false
+        self.run = self.run + 1 if false else 0
+        self.longest = max(self.longest, self.run)
+
+    def contradict(self) -> bool:
+        return self.n_false >= _LEAST and (self.n_false >= _LEAST_SHARE * self.n or self.longest >= _RUN)
+
+
+@dataclass
+class _Test:
+    """One comparison, track by track: many that agree hide none that does not."""
+
+    tracks: dict[str, _Minutes] = field(default_factory=dict)
+    worst: tuple[float, float] = (0.0, 0.0)
+
+    def count(self, track: str, *, false: bool, lengths_m: tuple[float, float]) -> None:
+        self.tracks.setdefault(track, _Minutes()).count(false=false)
+        if false and abs(lengths_m[0] - lengths_m[1]) > abs(self.worst[0] - self.worst[1]):
+            self.worst = lengths_m
+
+    def of(self) -> str | None:
+        """How many minutes contradict, in words; None where they are too few."""
+        n, n_false = (sum(getattr(each, name) for each in self.tracks.values()) for name in ("n", "n_false"))
+        false = [name for name, each in self.tracks.items() if each.contradict()]
+        if not false and not (0 < n_false == n or (n_false >= _LEAST and n_false >= _LEAST_SHARE * n)):
+            return None
+        which = f" ({len(false)} of {len(self.tracks)} tracks, {false[0]} the first of them)" if false and len(self.tracks) > 1 else ""
+        return f"in {n_false} of {n} minutes{which}"
 
 
 class Speeds:
     """Ways over windows of a minute, of epochs in the order of track and time, in pieces of any length."""
 
     def __init__(self) -> None:
-        self._n = self._n_longer = self._n_shorter = self._n_directed = self._n_aside = 0
-        self._worst = (0.0, 0.0)
-        self._worst_aside = (0.0, 0.0)
+        self._longer, self._shorter, self._aside = _Test(), _Test(), _Test()
         self._waiting: pl.DataFrame | None = None
 
     def see(self, epochs: pl.DataFrame) -> None:
@@ -55,8 +97,11 @@ class Speeds:
         rows = epochs.select(
             "track", "time_ns", "est_lat_rad", "est_lon_rad", _speed=speed, _sigma=_sigma_m(epochs), _whither=_whither(epochs)
         )
+        rows = rows.with_columns(pl.when(pl.col(name).is_finite()).then("time_ns").alias(f"{name}_ns") for name in _CARRIED)
         rows = rows if self._waiting is None else pl.concat([self._waiting, rows])
-        rows = rows.with_columns(_window=pl.col("time_ns") // _WINDOW_NS)
+        rows = rows.with_columns(_carried(name) for name in _CARRIED).with_columns(
+            pl.col([f"{name}_ns" for name in _CARRIED]).forward_fill().over("track"), _window=pl.col("time_ns") // _WINDOW_NS
+        )
         # The last window may go on in the next piece.
         last = (pl.col("track") == rows["track"][-1]) & (pl.col("_window") == rows["_window"][-1])
         self._waiting = rows.filter(last).drop("_window")
@@ -86,26 +131,14 @@ class Speeds:
                 apart_m = float(np.hypot(*apart_en_m))
                 noise_m = float(np.hypot(sigma[first], sigma[at.stop]))
                 legs_m = _legs_m(time_s[first : at.stop + 1], place[first : at.stop + 1])
-                self._compare_directed(float(np.hypot(*(apart_en_m - stated_en_m[at].sum(axis=0)))), float(stated_m[at].sum()), noise_m)
-                self._compare(apart_m, min(float(step_m[at].sum()), legs_m), float(stated_m[at].sum()), noise_m)
-
-    def _compare(self, apart_m: float, way_m: float, stated_m: float, sigma_m: float) -> None:
-        offset_m = _OFFSET_MPS * _WINDOW_S
-        longer = apart_m > _LONGER * stated_m + offset_m + _DEVIATIONS * sigma_m
-        shorter = way_m < _SHORTER * stated_m - offset_m
-        self._n += 1
-        self._n_longer += longer
-        self._n_shorter += shorter
-        if (longer or shorter) and abs(apart_m - stated_m) > abs(self._worst[0] - self._worst[1]):
-            self._worst = (apart_m if longer else way_m, stated_m)
-
-    def _compare_directed(self, aside_m: float, stated_m: float, sigma_m: float) -> None:
-        if not math.isfinite(aside_m):
-            return
-        self._n_directed += 1
-        if aside_m > _ASIDE * stated_m + _OFFSET_MPS * _WINDOW_S + _DEVIATIONS * sigma_m:
-            self._n_aside += 1
-            self._worst_aside = max(self._worst_aside, (aside_m, stated_m))
+                name, way_m, by_speed_m = rows["track"][first], min(float(step_m[at].sum()), legs_m), float(stated_m[at].sum())
+                offset_m, margin_m = _OFFSET_MPS * _WINDOW_S, _OFFSET_MPS * _WINDOW_S + _DEVIATIONS * noise_m
+                longer, shorter = apart_m > _LONGER * by_speed_m + margin_m, way_m < _SHORTER * by_speed_m - offset_m
+                self._longer.count(name, false=longer, lengths_m=(apart_m, by_speed_m))
+                self._shorter.count(name, false=shorter, lengths_m=(way_m, by_speed_m))
+                aside_m = float(np.hypot(*(apart_en_m - stated_en_m[at].sum(axis=0))))
+                if math.isfinite(aside_m):
+                    self._aside.count(name, false=aside_m > _ASIDE * by_speed_m + margin_m, lengths_m=(aside_m, by_speed_m))
 
     def doubts(self) -> list[str]:
         """A doubt, where there is one, after the last epochs."""
@@ -113,27 +146,29 @@ class Speeds:
             self._judge(self._waiting.with_columns(_window=pl.col("time_ns") // _WINDOW_NS), open_window=0)
             self._waiting = None
         doubts = []
-        for n, word in ((self._n_longer, "further"), (self._n_shorter, "less far")):
-            if _contradicts(n, self._n):
-                way_m, stated_m = self._worst
+        for test, word in ((self._longer, "further"), (self._shorter, "less far")):
+            if (where := test.of()) is not None:
                 doubts.append(
-                    f"The positions travel {word} than the recording's own speeds say in {n} of {self._n} minutes (at worst {way_m:.0f} m "
-                    f"for {stated_m:.0f} m): the positions are false, or they or the speeds are in another unit than they are read in"
+                    f"The positions travel {word} than the recording's own speeds say {where} (at worst {test.worst[0]:.0f} m for "
+                    f"{test.worst[1]:.0f} m): the positions are false, or they or the speeds are in another unit than they are read in"
                 )
-        if not doubts and _contradicts(self._n_aside, self._n_directed):
-            aside_m, stated_m = self._worst_aside
+        if not doubts and (where := self._aside.of()) is not None:
             doubts.append(
-                f"The positions end elsewhere than the recording's own speeds and tracks lead in {self._n_aside} of {self._n_directed} "
-                f"minutes (at worst {aside_m:.0f} m aside on a way of {stated_m:.0f} m): the positions are led off, or a column, such as "
-                "that of the track, is not what it is read as "
+                f"The positions end elsewhere than the recording's own speeds and tracks lead {where} (at worst "
+                f"{self._aside.worst[0]:.0f} m aside on a way of {self._aside.worst[1]:.0f} m): the positions are led off, or a column, "
+                f"such as that of the track, is not what it is read as "
                 f"({declare(f'ground_track_rad={NO_COLUMN}')}, to leave the track out)"
             )
         return doubts
 
 
-def _contradicts(n: int, of: int) -> bool:
-    """Whether so many windows are enough."""
-    return 0 < n == of or (n >= _LEAST and n >= _LEAST_SHARE * of)
+_CARRIED = ("_speed", "_whither")
+"""Columns whose last value counts for as long as a step may be; when it was stated stands beside it."""
+
+
+def _carried(name: str) -> pl.Expr:
+    known, stated_ns = pl.col(name).fill_nan(None).forward_fill().over("track"), pl.col(f"{name}_ns").forward_fill().over("track")
+    return pl.when(pl.col("time_ns") - stated_ns <= _LONGEST_STEP_S * 1e9).then(known).fill_null(float("nan")).alias(name)
 
 
 def _legs_m(time_s: NDArray[np.float64], place: NDArray[np.float64]) -> float:

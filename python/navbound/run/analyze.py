@@ -164,8 +164,8 @@ def material(
         if origin.id == "solved"
         else words_beside(claimed, _unread(readings))
     )
-    position_doubts, truth_doubts = [*_doubts(readings, decided=truth is not None), *doubts_of_speeds(epochs)], TruthDoubts()
-    assumptions = [of_covariance, plausibility.words, *doubts_of_axes(epochs)]
+    position_doubts = [*_doubts(readings, decided=truth is not None), *doubts_of_speeds(epochs), *doubts_of_axes(epochs)]
+    truth_doubts, assumptions = TruthDoubts(), [of_covariance, plausibility.words]
     if truth is not None:
         epochs, words, other, truth_doubts = with_truth(epochs, named)
         assumptions.append(words)
@@ -279,7 +279,6 @@ def _in_pieces(file: Path, path: str | Path | None, truth: Truth, context: _Cont
         assumptions=[
             words_beside(recorded.claimed, reading.unread),
             recorded.plausibility.words,
-            *recorded.doubts,
             *of_truth,
             *recorded.flights,
             *route.words,

@@ -304,6 +304,26 @@ pub fn sea_level(report: &Report) -> Result<EcefPosition, OutOfDomain> {
     Ok(ecef_from_geodetic(&Geodetic { point, height: Metres::new(0.0) }))
 }
 
+/// The last speed that was reported. It stands in for the latency where reports state none: a field that is empty now and then must not
+/// turn off what is judged by speeds.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LastSpeed {
+    /// When it was reported, and the speed \[m/s\].
+    pub reported: Option<(GpsTime, f64)>,
+}
+
+impl LastSpeed {
+    /// The next report, with the speed that counts for it.
+    pub fn standing_in(&mut self, report: &Report, limits: &Limits) -> Report {
+        if !report.speed_mps.is_nan() {
+            self.reported = Some((report.time, report.speed_mps));
+            return *report;
+        }
+        let last = self.reported.filter(|(time, _)| within(report.time, *time, limits.latency_s));
+        Report { speed_mps: last.map_or(f64::NAN, |(_, speed_mps)| speed_mps), ..*report }
+    }
+}
+
 /// The motion of a track whose reports arrive: the last different position, an earlier one, and the last jump.
 ///
 /// The same rules as for a recording, as far as one report and earlier ones decide them. What needs later reports, or the speeds of
@@ -325,6 +345,8 @@ pub struct Motion {
     pub height: Option<Height>,
     /// The way that it made good.
     pub way: Way,
+    /// The last speed that it reported.
+    pub speed: LastSpeed,
 }
 
 impl Motion {
@@ -332,8 +354,9 @@ impl Motion {
     ///
     /// # Errors
     /// [`OutOfDomain`] for a position that is no place on the Earth.
-    pub fn see(&mut self, report: &Report, limits: &Limits) -> Result<Finding, OutOfDomain> {
-        let here = sea_level(report)?;
+    pub fn see(&mut self, reported: &Report, limits: &Limits) -> Result<Finding, OutOfDomain> {
+        let here = sea_level(reported)?;
+        let report = &self.speed.standing_in(reported, limits);
         let Some((from, seen)) = self.last.zip(self.gone.seen) else {
             (self.last, self.anchor, self.height) = (Some(*report), Some(*report), report.height);
             self.way.is_behind(report, limits)?;

@@ -78,6 +78,9 @@ fn a_position_that_stands_with_noise_while_its_aircraft_moves_is_stale() {
     assert!(epochs[..20].iter().all(|e| e.reason.is_none()), "{:?}", epochs[..20].iter().map(|e| e.reason).collect::<Vec<_>>());
     assert!(epochs[20..].iter().all(|e| e.reason == Some(Reason::PositionStale)));
     assert!(epochs[20..].iter().all(|e| e.alert == rnp::Alert::Unavailable));
+    // A speed that is empty now and then changes nothing.
+    let blank = |k: u32| if k % 15 == 7 { stands(k).replace(SPEED, "") } else { stands(k) };
+    assert!(from_file((0..100).map(blank)).0[25..].iter().all(|e| e.reason == Some(Reason::PositionStale)));
     // The same noise on a flight, and on an aircraft that says that it stands.
     for (of, speed) in [(1.0, SPEED), (0.0, ",\"ground_speed_mps\":0.0")] {
         let (epochs, _) = from_file((0..100).map(|k| line("d", f64::from(k), &placed(0.5 + of * 1e-5 * f64::from(k) + noise(k), speed))));

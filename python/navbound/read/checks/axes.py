@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
+from typing import TYPE_CHECKING
 
 import numpy as np
 import polars as pl
 
 from navbound.read.checks.places import east_north_m
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
 
 _COLUMNS = ("track", "time_ns", "est_lat_rad", "est_lon_rad", "ground_track_rad")
 _LEAST_M = 20.0
@@ -23,7 +30,9 @@ class Axes:
     """Counts over epochs in the order of track and time, in pieces of any length."""
 
     def __init__(self) -> None:
-        self._n = self._n_agree = self._n_exchanged = 0
+        self._n: Counter[str] = Counter()
+        self._n_agree: Counter[str] = Counter()
+        self._n_exchanged: Counter[str] = Counter()
         self._last: pl.DataFrame | None = None
 
     def see(self, epochs: pl.DataFrame) -> None:
@@ -39,23 +48,38 @@ class Axes:
         same = (track[1:] == track[:-1]) & np.isfinite(reported)
         move, exchanged = east_north_m(place[:-1], place[1:]), east_north_m(place[:-1, ::-1], place[1:, ::-1])
         same &= (np.hypot(*move.T) > _LEAST_M) & (np.hypot(*exchanged.T) > _LEAST_M)
-        self._n += int(same.sum())
-        self._n_agree += _agreeing(move[same], reported[same])
-        self._n_exchanged += _agreeing(exchanged[same], reported[same])
+        agrees, agrees_exchanged = _agreeing(move, reported), _agreeing(exchanged, reported)
+        for name, at in _spans(rows["track"]):
+            steps = slice(at.start, min(at.stop, same.size))
+            self._n[name] += int(same[steps].sum())
+            self._n_agree[name] += int((agrees & same)[steps].sum())
+            self._n_exchanged[name] += int((agrees_exchanged & same)[steps].sum())
 
     def words(self) -> list[str]:
-        """A doubt, where there is one."""
-        if self._n < _LEAST_MOVES or self._n_agree >= _AGREES * self._n:
+        """A doubt, where there is one: of each track, so that many that agree hide none that does not."""
+        doubted = [name for name, n in self._n.items() if n >= _LEAST_MOVES and self._n_agree[name] < _AGREES * n]
+        if not doubted:
             return []
-        low = f"The positions move in the direction of the reported track (within 20 deg) at {self._n_agree} of {self._n} steps only"
-        if self._n_exchanged > _AGREES * self._n:
-            return [f"{low}, with latitude and longitude exchanged at {self._n_exchanged}: are both columns what they are read as?"]
-        return [f"{low}: the track or the positions are not what they are read as."]
+        n, n_agree, n_exchanged = (sum(count[name] for name in doubted) for count in (self._n, self._n_agree, self._n_exchanged))
+        of = f" of {len(doubted)} tracks, {doubted[0]} the first of them," if len(self._n) > 1 else ""
+        low = f"The positions{of} move in the direction of the reported track (within 20 deg) at {n_agree} of {n} steps only"
+        if n_exchanged > _AGREES * n:
+            return [f"{low}, with latitude and longitude exchanged at {n_exchanged}: the two may be exchanged"]
+        return [f"{low}: the track or the positions are not what they are read as"]
 
 
-def _agreeing(move: np.ndarray[tuple[int, int], np.dtype[np.float64]], reported: np.ndarray[tuple[int], np.dtype[np.float64]]) -> int:
+def _spans(track: pl.Series) -> Iterator[tuple[str, slice]]:
+    """Names of tracks that follow one another, and their rows."""
+    runs = track.rle().struct.unnest()
+    begin = 0
+    for length, name in zip(runs["len"], runs["value"], strict=True):
+        yield name, slice(begin, begin + length)
+        begin += length
+
+
+def _agreeing(move: NDArray[np.float64], reported: NDArray[np.float64]) -> NDArray[np.bool_]:
     away = np.arctan2(move[:, 0], move[:, 1]) - reported
-    return int((np.abs(np.arctan2(np.sin(away), np.cos(away))) <= _NEAR_RAD).sum())
+    return np.abs(np.arctan2(np.sin(away), np.cos(away))) <= _NEAR_RAD
 
 
 def doubts_of_axes(epochs: pl.DataFrame) -> list[str]:

@@ -241,7 +241,7 @@ _SPEAKS = _words(
     "deviation cdi monitor message msg state carrsoln "
     "hpe herror h50 h95 mrse residual misfit dev unc uncert smaj rss tke ci95 ci "
     "confidence outlier misleading degraded lost loss solution denied reckoning estimated predicted propagated simulated source "
-    "p50 p67 p68 p95 p99 merit navperf rnp anomaly anomalies protected pte latency exceed exceeds svs used "
+    "p50 p67 p68 p95 p99 merit navperf rnp anomaly anomalies protected pte latency lag delay seen exceed exceeds svs used "
 )
 """Parts of names that speak of validity, accuracy or integrity. Provenance: ours."""
 
@@ -405,7 +405,8 @@ def stated(kind: Kind, raw: pl.Series) -> Stated:
         others = unknown & ~number if kind.numbers_unknown else unknown
         against, unknown = against | others, unknown & ~others
     if kind.above < math.inf:
-        against, unknown, empty = (value > kind.above).fill_null(value=False), unknown & value.is_null(), False
+        # A negative one is none.
+        against, unknown, empty = (value > kind.above).fill_null(value=False), unknown & (value.is_null() | (value < 0.0)), False
     # A word of an alarm is one in a column of states too.
     alarm = (unknown & ~number & _alarm(text, _STATE_ALARM)).fill_null(value=False)
     against, unknown = against | alarm, unknown & ~alarm

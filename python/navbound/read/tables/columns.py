@@ -281,7 +281,8 @@ class Assignment:
         compared = {column.name for column in self.again}
         plain = {name: _plain(name)[0] for name in self.unused if name not in compared}
         transponders = bool(TRANSPONDER & set(plain.values()))
-        speaks = {name: speaks_of_integrity(name) or each in _accuracies_by_alias() for name, each in plain.items()}
+        known = _accuracies_by_alias().union(POSITION_TIME_NAMES)
+        speaks = {name: speaks_of_integrity(name) or each in known for name, each in plain.items()}
         return [name for name, each in plain.items() if speaks[name] and not (transponders and each == "alert")]
 
     @property

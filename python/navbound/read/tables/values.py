@@ -137,7 +137,7 @@ class Values:
         for place, (name, column) in enumerate(self._mapping.columns.items()):
             raw = frame[column.name]
             if QUANTITY[name].si == "text":
-                out[name] = raw.cast(pl.String).str.replace_all(UNSEEN, "").str.strip_chars()
+                out[name] = _name(name, raw.cast(pl.String).str.replace_all(UNSEEN, "").str.strip_chars())
                 continue
             out[name], reason = numbers(raw, column)
             reasons[name] = reason
@@ -599,6 +599,18 @@ _NAMED = 100
 def _few(names: list[str]) -> str:
     more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
     return f"{', '.join(names[:_NAMED])}{more}"
+
+
+_ADDRESS = r"^(?:0[xX])?([0-9A-Fa-f]{6})$"
+"""An aircraft's address of 24 bits."""
+
+
+def _name(quantity: str, text: pl.Series) -> pl.Series:
+    """Names that differ in writing alone are one: addresses in small letters, callsigns in capitals without padding."""
+    if quantity == "track":
+        address = text.str.extract(_ADDRESS).str.to_lowercase()
+        return pl.select(pl.coalesce(address, text)).to_series().alias(text.name)
+    return text.str.strip_chars("_ ").str.to_uppercase() if quantity == "callsign" else text
 
 
 def _largest(values: pl.Series) -> float:

@@ -90,12 +90,10 @@ class InPieces:
         Tracks with a protection level anywhere.
     period_s : float
         Usual time between epochs of a track; 1 s where no track has two. [s]
-    doubts : list of str
-        That the positions do not move as the recording says.
     flights : list of str
         How many tracks were divided.
     position_doubts : list of str
-        That they do not travel as its speeds say.
+        That they do not travel as far, or whither, its speeds and tracks say.
     ends : DataFrame
         ``track``, ``start`` and ``end`` of every track that is judged. [GPS ns]
     """
@@ -109,7 +107,6 @@ class InPieces:
     labels_before: dict[str, str]
     with_levels: frozenset[str]
     period_s: float
-    doubts: list[str]
     flights: list[str]
     position_doubts: list[str]
     ends: pl.DataFrame
@@ -165,9 +162,8 @@ def in_pieces(path: Path, request: Request) -> InPieces:
         labels_before=checks.labels.usual(),
         with_levels=frozenset(labels.with_levels),
         period_s=steps.median_s(),
-        doubts=checks.axes.words(),
         flights=flights.words(),
-        position_doubts=checks.speeds.doubts(),
+        position_doubts=[*checks.speeds.doubts(), *checks.axes.words()],
         ends=ends.table(),
     )
 
