@@ -218,7 +218,6 @@ def stands_from_30(**added: Any) -> list[dict[str, Any]]:
 def test_an_empty_speed_now_and_then_turns_no_rule_off(tmp_path: Path, every: int) -> None:
     run = analyzed(tmp_path, stands_from_30(ground_speed_mps=lambda k: None if k % every == 1 else SPEED_MPS))
     assert run.summary.verdict.id != "inside"
-    assert any("travel less far" in each for each in run.summary.verdict.position_doubts)
     assert "position_stale" in reasons(run)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import polars as pl
 
 from navbound.read.checks.places import east_north_m
+from navbound.read.checks.plausible import plausible_rows
 from navbound.read.tables.columns import NO_COLUMN, declare
 from navbound.table.columns import HORIZONTAL
 
@@ -62,15 +63,17 @@ class _Minutes:
 
 @dataclass
 class _Test:
-    """One comparison, track by track: many that agree hide none that does not."""
+    """One comparison, track by track: many that agree hide none that does not. Of the second length the first is such a share."""
 
+    expected: float = 1.0
     tracks: dict[str, _Minutes] = field(default_factory=dict)
     worst: tuple[float, float] = (0.0, 0.0)
+    excess_m: float = 0.0
 
     def count(self, track: str, *, false: bool, lengths_m: tuple[float, float]) -> None:
         self.tracks.setdefault(track, _Minutes()).count(false=false)
-        if false and abs(lengths_m[0] - lengths_m[1]) > abs(self.worst[0] - self.worst[1]):
-            self.worst = lengths_m
+        if false and (excess_m := abs(lengths_m[0] - self.expected * lengths_m[1])) > self.excess_m:
+            self.worst, self.excess_m = lengths_m, excess_m
 
     def of(self) -> str | None:
         """How many minutes contradict, in words; None where they are too few."""
@@ -86,7 +89,7 @@ class Speeds:
     """Ways over windows of a minute, of epochs in the order of track and time, in pieces of any length."""
 
     def __init__(self) -> None:
-        self._longer, self._shorter, self._aside = _Test(), _Test(), _Test()
+        self._longer, self._shorter, self._aside = _Test(), _Test(), _Test(expected=0.0)
         self._waiting: pl.DataFrame | None = None
 
     def see(self, epochs: pl.DataFrame) -> None:
@@ -94,9 +97,8 @@ class Speeds:
         speed = _stated(epochs)
         if speed is None or epochs.is_empty():
             return
-        rows = epochs.select(
-            "track", "time_ns", "est_lat_rad", "est_lon_rad", _speed=speed, _sigma=_sigma_m(epochs), _whither=_whither(epochs)
-        )
+        own = {"_speed": speed, "_sigma": _sigma_m(epochs), "_whither": _whither(epochs), "_plausible": plausible_rows(epochs)}
+        rows = epochs.select("track", "time_ns", "est_lat_rad", "est_lon_rad", **own)
         rows = rows.with_columns(pl.when(pl.col(name).is_finite()).then("time_ns").alias(f"{name}_ns") for name in _CARRIED)
         rows = rows if self._waiting is None else pl.concat([self._waiting, rows])
         rows = rows.with_columns(_carried(name) for name in _CARRIED).with_columns(
@@ -118,7 +120,9 @@ class Speeds:
         velocity = speed[:, None] * np.column_stack([np.sin(whither), np.cos(whither)])
         stated_en_m = 0.5 * (velocity[:-1] + velocity[1:]) * step_s[:, None]
         track = rows["track"].rle_id().to_numpy()
-        sound = np.isfinite(stated_m) & np.isfinite(step_m) & (step_s > 0) & (step_s <= _LONGEST_STEP_S) & (track[1:] == track[:-1])
+        plausible = rows["_plausible"].to_numpy()
+        sound = plausible[1:] & plausible[:-1]
+        sound &= np.isfinite(stated_m) & np.isfinite(step_m) & (step_s > 0) & (step_s <= _LONGEST_STEP_S) & (track[1:] == track[:-1])
         # A step belongs to the window in which it begins.
         of = rows.select(pl.struct("track", "_window").rle_id())["track"].to_numpy()[: rows.height - open_window]
         if of.size == 0:

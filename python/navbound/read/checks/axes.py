@@ -10,6 +10,7 @@ import numpy as np
 import polars as pl
 
 from navbound.read.checks.places import east_north_m
+from navbound.read.checks.plausible import plausible_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -39,7 +40,7 @@ class Axes:
         """The next epochs."""
         if not set(_COLUMNS) <= set(epochs.columns):
             return
-        rows = epochs.select(_COLUMNS)
+        rows = epochs.select(*_COLUMNS, _plausible=plausible_rows(epochs))
         rows = rows if self._last is None else pl.concat([self._last, rows])
         self._last = rows.tail(1)
         place = rows.select("est_lat_rad", "est_lon_rad").to_numpy()
@@ -47,6 +48,8 @@ class Axes:
         track = rows["track"].rle_id().to_numpy()
         same = (track[1:] == track[:-1]) & np.isfinite(reported)
         move, exchanged = east_north_m(place[:-1], place[1:]), east_north_m(place[:-1, ::-1], place[1:, ::-1])
+        plausible = rows["_plausible"].to_numpy()
+        same &= plausible[1:] & plausible[:-1]
         same &= (np.hypot(*move.T) > _LEAST_M) & (np.hypot(*exchanged.T) > _LEAST_M)
         agrees, agrees_exchanged = _agreeing(move, reported), _agreeing(exchanged, reported)
         for name, at in _spans(rows["track"]):

@@ -96,6 +96,13 @@ class Plausibility:
     words: str
 
 
+def plausible_rows(epochs: pl.DataFrame) -> pl.Expr:
+    """Rows against whose positions nothing is known, after :func:`check`; what is said of the others is not said again."""
+    if "reason_id" not in epochs.columns:
+        return pl.lit(value=True)
+    return ~pl.col("reason_id").is_in([id_ for id_ in _REASON_ID if id_]).fill_null(value=False)
+
+
 def unreachable(rows: pl.DataFrame, lat: str, lon: str, limits: Limits) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Where the positions of one track, in the order of time, jump; and where they jump or have not settled since."""
     time, lat_rad, lon_rad = (np.ascontiguousarray(rows[name].to_numpy()) for name in ("time_ns", lat, lon))

@@ -182,11 +182,12 @@ class _Checks:
         for part in self._reading.spread():
             self.checker.see(part)
         for piece, after in _with_the_next(self._reading.epochs(), _core.SPEEDS_BESIDE):
-            self.axes.see(piece)
             self.claimed = self._claims.claim(piece)
-            self.speeds.see(self.claimed.epochs)
             self.labels.see(piece)
-            yield self.checker.check(self.claimed.epochs, after)
+            checked = self.checker.check(self.claimed.epochs, after)
+            self.axes.see(checked)
+            self.speeds.see(checked)
+            yield checked
 
 
 class _Ends:
