@@ -33,7 +33,7 @@ def table(path: Path, moved_mps: float, stated: np.ndarray | float, unit: str = 
     [
         (11.0, 0.0, "mps", "further"),
         (80.0, 40.0, "mps", "further"),
-        (1.0, 60.0, "mps", "less far"),
+        (31.0, 60.0, "mps", "less far"),
         (80.0, 80.0, "mps", ""),
         (80.0, 80.0 / 0.514444, "kt", ""),
         (80.0, 80.0 / 0.514444, "mps", "less far"),
@@ -44,6 +44,13 @@ def test_a_way_that_the_stated_speeds_cannot_explain_is_a_doubt(tmp_path: Path, 
     verdict = navbound.analyze(table(tmp_path / "a.csv", moved, stated, unit)).summary.verdict
     assert (verdict.id, bool(verdict.position_doubts)) == (("not_shown", True) if word else ("inside", False))
     assert word in " ".join(verdict.position_doubts)
+
+
+def test_a_stand_is_said_of_its_rows_and_not_again(tmp_path: Path) -> None:
+    """At less than half of the way the positions are stale."""
+    verdict = navbound.analyze(table(tmp_path / "a.csv", 1.0, 60.0)).summary.verdict
+    assert (verdict.id, verdict.position_doubts) == ("not_shown", [])
+    assert verdict.n_reason["position_stale"] > 0.9 * verdict.n_epochs
 
 
 def test_noise_of_the_stated_size_is_no_way(tmp_path: Path) -> None:
