@@ -46,7 +46,7 @@ def test_a_way_that_the_stated_speeds_cannot_explain_is_a_doubt(tmp_path: Path, 
     assert word in " ".join(verdict.position_doubts)
 
 
-def test_a_stand_is_said_of_its_rows_and_not_again(tmp_path: Path) -> None:
+def test_rows_of_a_stand_are_stale_and_no_doubt(tmp_path: Path) -> None:
     """At less than half of the way the positions are stale."""
     verdict = navbound.analyze(table(tmp_path / "a.csv", 1.0, 60.0)).summary.verdict
     assert (verdict.id, verdict.position_doubts) == ("not_shown", [])
