@@ -7,6 +7,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+import polars as pl
 import pytest
 
 from live_fixture import recorded
@@ -14,6 +15,7 @@ from navbound import _core, live
 from navbound.errors import FormatError
 from navbound.live import journal, zones
 from navbound.live.sinks import tables
+from navbound.read.checks import statements
 
 UNIX_S = 1_731_000_000.0
 LINE: dict[str, Any] = {
@@ -123,3 +125,28 @@ def test_a_changed_table_is_another_session(tmp_path: Path) -> None:
 def test_a_table_that_is_none_says_where(tmp_path: Path, text: str, sentence: str) -> None:
     with pytest.raises(FormatError, match=sentence):
         zones.load(table(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "adsb_icao",
+        "adsb_icao_nt",
+        "adsb_other",
+        "adsr_icao",
+        "adsr_other",
+        "tisb_icao",
+        "tisb_trackfile",
+        "tisb_other",
+        "mlat",
+        "mode_s",
+        "adsc",
+    ],
+)
+def test_whose_a_position_is_says_a_table_as_a_live_source_does(tmp_path: Path, source: str) -> None:
+    epochs = tables.epochs(session(tmp_path, [{"type": source}]))
+    kind = statements.kind_of("type")
+    assert kind is not None
+    stated = statements.stated(kind, pl.Series([source]))
+    assert (stated.against[0] is not None) == (epochs["reason_id"][0] == "foreign_position")
+    assert stated.unknown == []

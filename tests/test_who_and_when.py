@@ -283,3 +283,10 @@ def test_a_callsign_is_one_in_any_writing(tmp_path: Path) -> None:
 )
 def test_an_age_that_is_not_understood_is_named(tmp_path: Path, added: dict[str, Any], named: str) -> None:
     assert named in analyzed(tmp_path, rows(**added)).summary.verdict.unread
+
+
+def test_a_time_and_a_position_cannot_be_left_out(tmp_path: Path) -> None:
+    analyzed(tmp_path, rows())
+    for quantity in ("time", "est_lat_rad"):
+        with pytest.raises(FormatError):
+            navbound.analyze(tmp_path / "a.json", columns={quantity: "-"})

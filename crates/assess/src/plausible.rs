@@ -225,8 +225,8 @@ impl Track {
             self.last = Some((*report, here));
             self.window = Some(Window::begin(report, here));
             self.gone.step(report, false, limits);
-            let finding = if self.frozen { Finding::Stale } else { Finding::Plausible };
-            return Ok(Judged { finding, age_s: 0.0, step_m: 0.0, too_fast_mps: 0.0, speed_doubted });
+            let finding = report.with_age(if self.frozen { Finding::Stale } else { Finding::Plausible }, limits);
+            return Ok(Judged { finding, age_s: report.age_s(), step_m: 0.0, too_fast_mps: 0.0, speed_doubted });
         };
         let elapsed = report.time.seconds_since(fix.time);
         let unchanged = report.lat_rad == fix.lat_rad && report.lon_rad == fix.lon_rad;
@@ -261,6 +261,7 @@ impl Track {
             finding = Finding::Stale;
             age_s = age_s.max(behind.or(stands_s).unwrap_or_else(|| report.time.seconds_since(repeated_since)));
         }
+        (finding, age_s) = (report.with_age(finding, limits), age_s.max(report.age_s()));
         let settling = self.jumped.is_some_and(|t| within(report.time, t, limits.settle_s));
         if settling && matches!(finding, Finding::Plausible | Finding::Repeated | Finding::Late) {
             finding = Finding::Unsettled;

@@ -78,7 +78,8 @@ Columns = Annotated[
     list[str] | None,
     typer.Option(
         "--map",
-        help="What a column is, where its name does not say: sigma_n_m=sd_north, time=t:gps_s, est_lat_rad=lat:deg_e7; may be repeated. "
+        help="What a column is, where its name does not say: sigma_n_m=sd_north, time=t:gps_s, est_lat_rad=lat:deg_e7, "
+        "ground_track_rad=- for none; may be repeated. "
         "Columns of a truth file: truth_time, truth_lat_rad, truth_lon_rad, truth_h_m. Names and units: docs/notation.md.",
     ),
 ]

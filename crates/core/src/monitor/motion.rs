@@ -54,6 +54,23 @@ pub struct Report {
     pub height: Option<Height>,
 }
 
+impl Report {
+    /// The age that the recording states of the position \[s\]; 0 where it states none.
+    pub fn age_s(&self) -> f64 {
+        self.fixed.map_or(0.0, |fixed| self.time.seconds_since(fixed))
+    }
+
+    /// A finding, with what the stated age adds: a position that is said to be old is as one that is held as long.
+    pub fn with_age(&self, finding: Finding, limits: &Limits) -> Finding {
+        let age_s = self.age_s();
+        match finding {
+            Finding::Plausible | Finding::Repeated if age_s > limits.stale_after_s => Finding::Stale,
+            Finding::Plausible if age_s > limits.fix_latency_s => Finding::Repeated,
+            other => other,
+        }
+    }
+}
+
 /// What was found about one position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Finding {
@@ -361,7 +378,7 @@ impl Motion {
             (self.last, self.anchor, self.height) = (Some(*report), Some(*report), report.height);
             self.way.is_behind(report, limits)?;
             self.gone.step(report, false, limits);
-            return Ok(Finding::Plausible);
+            return Ok(report.with_age(Finding::Plausible, limits));
         };
         if report.time < seen {
             return Ok(Finding::Plausible);
@@ -382,7 +399,8 @@ impl Motion {
                 self.stepped(&from, report, &here, stood_s, limits)?
             };
             let behind = self.way.is_behind(report, limits)?.is_some();
-            if step != Finding::Jump && (behind || self.gone.stands_falsely(report, limits).is_some()) { Finding::Stale } else { step }
+            let stands = step != Finding::Jump && (behind || self.gone.stands_falsely(report, limits).is_some());
+            report.with_age(if stands { Finding::Stale } else { step }, limits)
         };
         if finding == Finding::Jump {
             self.dispute(report.time);
@@ -460,6 +478,24 @@ mod tests {
     fn findings(reports: &[Report], limits: &Limits) -> Vec<Finding> {
         let mut motion = Motion::default();
         reports.iter().map(|each| motion.see(each, limits).unwrap()).collect()
+    }
+
+    /// A latency of such times of 1 s, stale after 2 s.
+    #[test]
+    fn an_old_position_is_as_one_that_repeats_as_long() {
+        use Finding::{Late, Plausible, Repeated, Stale, Unsettled};
+        let of = |age_s: f64| {
+            let plain = report(100, 0.0, 0.0);
+            Report { fixed: Some(plain.time.plus_seconds(-age_s)), ..plain }
+        };
+        let aged = |age_s: f64| of(age_s).with_age(Plausible, &LIMITS);
+        assert_eq!([-5.0, 0.0, 1.0, 1.5, 2.0, 2.5].map(aged), [Plausible, Plausible, Plausible, Repeated, Repeated, Stale]);
+        for graver in [Stale, Finding::Jump, Unsettled, Late] {
+            assert_eq!(of(60.0).with_age(graver, &LIMITS), graver);
+        }
+        assert_eq!(of(1.5).with_age(Repeated, &LIMITS), Repeated);
+        assert_eq!(Report { fixed: None, ..of(60.0) }.with_age(Plausible, &LIMITS), Plausible);
+        assert_eq!(Motion::default().see(&of(60.0), &LIMITS), Ok(Stale));
     }
 
     #[test]

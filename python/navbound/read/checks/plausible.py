@@ -58,7 +58,7 @@ _UNDATED = -(2**63)
 
 _REASON_ID = [None, "position_held", "position_stale", "position_jump", "position_not_settled", "position_late"]
 """What the core found, by its codes."""
-_REPEATED, _STALE, _JUMP = (_REASON_ID.index(id_) for id_ in ("position_held", "position_stale", "position_jump"))
+_JUMP = _REASON_ID.index("position_jump")
 
 
 @dataclass(frozen=True)
@@ -166,7 +166,8 @@ class Checker:
             if not seen:
                 track.see(reports)
             findings = track.judge(reports, _speeds_after(name, after))
-            judged.append(findings | {"finding": self._dated(findings["finding"], reports)})
+            self._see_ages(findings["finding"], reports)
+            judged.append(findings)
             # Rows are in the order of tracks: only the last one may go on.
             self._tracks = {name: track} | {k: v for k, v in self._tracks.items() if k > name}
         names = ("finding", "step_m", "too_fast_mps", "speed_doubted")
@@ -178,19 +179,15 @@ class Checker:
         self._count(code, step, fast, columns)
         return _marked(epochs, code)
 
-    def _dated(self, code: NDArray[np.uint8], reports: _Reports) -> NDArray[np.uint8]:
-        """A position that is said to be old is as one that is held as long."""
+    def _see_ages(self, code: NDArray[np.uint8], reports: _Reports) -> None:
+        """How old the positions are by their own rows, and how far the aircraft has moved since, where that is no finding."""
         time_ns, fixed_ns, _, _, speed_mps = reports
         dated = fixed_ns != _UNDATED
-        age_s = np.where(dated, (time_ns - np.where(dated, fixed_ns, time_ns)) * 1e-9, 0.0)
-        old = np.where(age_s > self._limits.stale_after_s, _STALE, np.where(age_s > self._limits.fix_latency_s, _REPEATED, 0))
-        out = np.where(code <= _STALE, np.maximum(code, old), code).astype(np.uint8)
-        self._n_old += int((out != code).sum())
-        young = age_s[out == 0]
-        if young.size:
-            self._oldest_s = max(self._oldest_s, float(young.max()))
-            self._furthest_m = max(self._furthest_m, float(np.nan_to_num(young * speed_mps[out == 0]).max()))
-        return out
+        age_s = (time_ns[dated] - fixed_ns[dated]) * 1e-9
+        self._n_old += int((age_s > self._limits.fix_latency_s).sum())
+        plausible = code[dated] == 0
+        self._oldest_s = max(self._oldest_s, float(age_s[plausible].max(initial=0.0)))
+        self._furthest_m = max(self._furthest_m, float(np.nan_to_num(age_s * speed_mps[dated])[plausible].max(initial=0.0)))
 
     def _track(self, group: pl.DataFrame) -> _core.PlausibleTrack:
         name = group["track"][0]

@@ -104,7 +104,7 @@ AGE = Kind(
 )
 """The age of a position, in seconds; it dates the position, too."""
 
-_FOREIGN = _words("mlat tisb tis_b tisb_icao tisb_trackfile tisb_other adsr_icao adsr_other adsr")
+_FOREIGN = _words("mlat tisb tis_b tisb_icao tisb_trackfile tisb_other adsr_icao adsr_other adsr adsc mode_s")
 _OWN = _words("adsb ads_b adsb_icao adsb_icao_nt adsb_other flarm gps gnss")
 """Sources of positions, as readsb and others write them. By the decoder of live records, too, `adsb_` alone is the aircraft's own."""
 

@@ -365,7 +365,7 @@ def assign(
     known = {"time", "time_ns", *WEEK, *(q.name for q in quantities)}
     beside = {key: value for key, value in (where_present or {}).items() if key in known and _column_named(value, names)[0] in names}
     stated = beside | dict(declared or {})
-    absent = {key for key, value in stated.items() if value == NO_COLUMN and value not in names and key in known}
+    absent = {key for key, value in stated.items() if value == NO_COLUMN and value not in names and key in {q.name for q in quantities}}
     for key, value in ((key, value) for key, value in stated.items() if key not in absent):
         column = _declared(key, value, names, path, quantities)
         if column.quantity == "time":

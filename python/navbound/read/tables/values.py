@@ -13,6 +13,7 @@ from navbound.read.checks import levels, stated, statements
 from navbound.read.checks.places import NO_PLACE, Nowhere
 from navbound.read.checks.rejections import Kind, Tally
 from navbound.read.checks.repeats import Repeats, left_out, separate
+from navbound.read.tables.cells import MISSING, largest, no_field, numbers
 from navbound.read.tables.columns import (
     POSITION,
     POSITION_TIME,
@@ -24,10 +25,11 @@ from navbound.read.tables.columns import (
     is_header,
     position_time,
 )
+from navbound.read.tables.further import Further
+from navbound.read.tables.names import Callsigns, one_writing
 from navbound.read.tables.stated_units import is_row_of_units, require_same
 from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, understand, units
-from navbound.units import EARTH_RADIUS_M
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -37,7 +39,6 @@ if TYPE_CHECKING:
 
 _BAD, _EXAMPLE = "__bad", "__example"
 _RAW = "__raw "
-_MISSING = r"(?i)^([+-]?nan(\(\w*\))?)?$"
 
 _AGE, _OLDEST_S = "__age_s", 1e6
 """Column of the age that a row states of its position, and the largest that dates it. [s] Provenance: ours."""
@@ -59,12 +60,10 @@ def texts(frame: pl.DataFrame) -> set[str]:
     """Columns of text of which something is written in the first rows, and nothing there is a number."""
     head = frame.head(_SHOWN)
     strings = [name for name, dtype in head.schema.items() if dtype == pl.String and name != LINE]
-    written = {name: head[name].str.strip_chars().set(head[name].str.strip_chars().str.contains(_MISSING), None) for name in strings}
+    written = {name: head[name].str.strip_chars().set(head[name].str.strip_chars().str.contains(MISSING), None) for name in strings}
     return {name for name, each in written.items() if each.count() and each.cast(pl.Float64, strict=False).count() == 0}
 
 
-_APART_M = 100.0
-"""Two columns of one position contradict each other beyond it: two antennas and two filters do not. Provenance: ours. [m]"""
 _DIRECTED_MPS = 2.0
 """Slower velocities have no direction. Provenance: ours. [m/s]"""
 
@@ -106,20 +105,16 @@ class Values:
         self.tally, self.notes, self.position_doubts = Tally(), list[str](), list[str]()
         self._path, self._stem, self._mapping, self._required = path, stem, mapping, required
         self._dated = position_time(mapping.unused)
-        self._second = next((column for column in mapping.again if column.quantity == "time"), None)
+        self._further = Further(path, mapping)
         self._nowhere = Nowhere()
-        self._apart_m: dict[str, float] = {}
-        self._time_apart_s = 0.0
-        self._callsign: str | None = None
-        self._callsigns = dict[str, None]()
-        self._last_line = 0
-        self._facts, self._facts_dated, self._facts_second = list[TimeFacts](), list[TimeFacts](), list[TimeFacts]()
+        self._callsigns = Callsigns()
+        self._facts, self._facts_dated = list[TimeFacts](), list[TimeFacts]()
         self._dtypes: dict[str, pl.DataType] = {}
         self._n_unknown = 0
         self._unknown_statuses: dict[str, None] = {}
         self._unknown: dict[str, dict[str, None]] = {}
         self._largest = dict.fromkeys(POSITION, 0.0)
-        self._unit = self._unit_dated = self._unit_second = ""
+        self._unit = self._unit_dated = ""
         self._n_heights = self._n_feet = self._n_metres = 0
 
     def take(self, frame: pl.DataFrame) -> pl.DataFrame:
@@ -137,7 +132,7 @@ class Values:
         for place, (name, column) in enumerate(self._mapping.columns.items()):
             raw = frame[column.name]
             if QUANTITY[name].si == "text":
-                out[name] = _name(name, raw.cast(pl.String).str.replace_all(UNSEEN, "").str.strip_chars())
+                out[name] = one_writing(name, raw.cast(pl.String).str.replace_all(UNSEEN, "").str.strip_chars())
                 continue
             out[name], reason = numbers(raw, column)
             reasons[name] = reason
@@ -154,11 +149,11 @@ class Values:
             self.tally.add(
                 LEVELS + place, f"{heading}: {levels.REASON}", where.height, where[LINE][0], str(where[heading][0]), kind="quiet"
             )
-        part = self._with_age(self._with_unread(self._with_track(part, frame), frame), frame)
-        part = _with_speed(self._with_other_columns(part, frame)).with_columns(*_reasons(frame, against), *self._raw(frame))
+        part = self._with_age(self._with_unread(self._callsigns.as_tracks(part), frame), frame)
+        part = _with_speed(self._further.see(part, frame)).with_columns(*_reasons(frame, against), *self._raw(frame))
         for name in POSITION:
             if name in part.columns:
-                self._largest[name] = max(self._largest[name], _largest(part[name]))
+                self._largest[name] = max(self._largest[name], largest(part[name]))
         self._see_heights(part)
         if set(POSITION) <= set(self._required):
             self._nowhere.see(part)
@@ -171,7 +166,7 @@ class Values:
     def _with_unread(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
         """The largest number of the columns that nothing reads though they speak of an accuracy, or of a level; it bounds nothing."""
         for quantity, lengths in (("unread_accuracy_m", self._mapping.accuracies), ("unread_level_m", self._mapping.levels)):
-            known = {name: frame[name] for name in lengths if not _no_field(frame.schema[name])}
+            known = {name: frame[name] for name in lengths if not no_field(frame.schema[name])}
             numbers_of = {name: raw.cast(pl.Float64, strict=False).abs().fill_nan(None) for name, raw in known.items()}
             self._count_uncompared(frame, numbers_of)
             values = [(each * lengths[name]).alias(name) for name, each in numbers_of.items()]
@@ -179,40 +174,9 @@ class Values:
                 part = part.with_columns(pl.DataFrame(values).max_horizontal().alias(quantity))
         return part
 
-    def _with_other_columns(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
-        """What further columns say of the speed and the position: the largest speed counts, and two positions contradict each other."""
-        scale_m = {"est_lat_rad": pl.lit(EARTH_RADIUS_M), "est_lon_rad": EARTH_RADIUS_M * pl.col("est_lat_rad").cos()}
-        for column in self._mapping.again:
-            if column.quantity not in part.columns or _no_field(frame.schema[column.name]):
-                continue
-            other, _ = numbers(frame[column.name], column)
-            if column.quantity == "ground_speed_mps":
-                part = part.with_columns(pl.max_horizontal(column.quantity, other).alias(column.quantity))
-            else:
-                turns = ((pl.col(column.quantity) - other) / (2.0 * math.pi)).round()
-                apart_m = (pl.col(column.quantity) - other - 2.0 * math.pi * turns).abs() * scale_m[column.quantity]
-                largest_m = _largest(part.select(apart_m.alias("apart_m"))["apart_m"])
-                self._apart_m[column.name] = max(self._apart_m.get(column.name, 0.0), largest_m)
-        return part
-
-    def _with_track(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
-        """Where no column names the aircraft, its callsign does: what one aircraft states is none of the next one's."""
-        if "track" in part.columns or "callsign" not in part.columns or frame.is_empty():
-            return part
-        # The rows come once to be timed and once to be read.
-        carried = None if frame[LINE][0] <= self._last_line else self._callsign
-        self._last_line = int(frame[LINE][-1])
-        named = part["callsign"].replace("", None)
-        known = pl.concat([pl.Series("callsign", [carried], pl.String), named]).fill_null(strategy="forward")[1:]
-        if carried is None:
-            known = known.fill_null(strategy="backward")
-        self._callsign = known[-1]
-        self._callsigns.update(dict.fromkeys(named.drop_nulls().unique(maintain_order=True)))
-        return part.with_columns(known.alias("track"))
-
     def _with_age(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
         """The age that a row states of its position, where no column states the time of the position."""
-        ages = [name for name, kind in self._mapping.statements if kind is statements.AGE and not _no_field(frame.schema[name])]
+        ages = [name for name, kind in self._mapping.statements if kind is statements.AGE and not no_field(frame.schema[name])]
         if self._dated is not None or not ages:
             return part
         stated_s = [frame[name].cast(pl.Float64, strict=False).fill_nan(None).alias(name) for name in ages]
@@ -225,7 +189,7 @@ class Values:
             if frame.schema[name] != pl.String:
                 continue
             written = frame[name].str.strip_chars()
-            text = values.is_null() & ~written.str.contains(_MISSING).fill_null(value=True)
+            text = values.is_null() & ~written.str.contains(MISSING).fill_null(value=True)
             at = frame.filter(text)
             if not at.is_empty():
                 place = COMPARED + self._mapping.unused.index(name)
@@ -258,7 +222,7 @@ class Values:
     def _check_kinds(self, frame: pl.DataFrame) -> None:
         names = [column.name for column in (*self._mapping.columns.values(), *self._mapping.times)]
         for name in (*names, *(name for name, _ in self._mapping.statements)):
-            if _no_field(frame.schema[name]):
+            if no_field(frame.schema[name]):
                 raise FormatError(self._path, f"holds {frame.schema[name]}, where a number or a text is needed", field=name)
 
     def _count(self, place: int, frame: pl.DataFrame, name: str, reason: pl.Series) -> pl.Series:
@@ -271,15 +235,11 @@ class Values:
 
     def _raw(self, frame: pl.DataFrame) -> list[pl.Series]:
         self._facts.append(TimeFacts.of(frame, self._mapping.times))
-        if self._dated is not None and _no_field(frame.schema[self._dated.name]):
+        if self._dated is not None and no_field(frame.schema[self._dated.name]):
             self._dated = None
         dated = [] if self._dated is None else [self._dated]
         self._facts_dated += [TimeFacts.of(frame, [column]) for column in dated]
-        if self._second is not None and _no_field(frame.schema[self._second.name]):
-            self._second = None
-        second = [] if self._second is None else [self._second]
-        self._facts_second += [TimeFacts.of(frame, [column]) for column in second]
-        columns = {column.name: frame[column.name] for column in (*self._mapping.times, *dated, *second)}
+        columns = {column.name: frame[column.name] for column in (*self._mapping.times, *dated)} | self._further.times(frame)
         self._dtypes |= {name: values.dtype for name, values in columns.items()}
         return [values.alias(_RAW + name) for name, values in columns.items()]
 
@@ -349,11 +309,10 @@ class Values:
             )
         if tuple(self._required) == POSITION and self._mapping.unused:
             self.notes.append(f"{name}: columns not used: {_few(self._mapping.unused)}")
-        if len(self._callsigns) > 1:
-            self.notes.append(f"{name}: no column names the aircraft; each of {len(self._callsigns)} callsigns is a track of its own")
+        self.notes += self._callsigns.words(name)
         self._look_like_radians()
         self._look_like_feet()
-        self._look_like_another()
+        self.position_doubts += self._further.doubts()
         self._unit = self._understood(self._mapping.times, self._facts)
         if self._dated is not None:
             try:
@@ -361,15 +320,9 @@ class Values:
             except FormatError as e:
                 self.notes.append(f"{name}: “{self._dated.name}” is not used: {e.message}")
                 self._dated = None
-        if self._second is not None:
-            try:
-                # What it may be is no remark on the times that are read.
-                facts = TimeFacts.together(self._facts_second)
-                self._unit_second = understand(facts, [self._second], self._dtypes[self._second.name], self._path, [])
-            except FormatError:
-                self._second = None
+        self._further.understand(self._dtypes)
         # The numbers of all rows are needed no more.
-        self._facts, self._facts_dated, self._facts_second = [], [], []
+        self._facts, self._facts_dated = [], []
 
     def _understood(self, columns: list[Column], facts: list[TimeFacts]) -> str:
         return understand(TimeFacts.together(facts), columns, self._dtypes[columns[0].name], self._path, self.notes)
@@ -399,7 +352,7 @@ class Values:
             pl.coalesce(_BAD, timeless).alias(_BAD),
             pl.when(pl.col(_BAD).is_null()).then(_text(raw[name], timeless.is_not_null())).otherwise(pl.col(_EXAMPLE)).alias(_EXAMPLE),
         )
-        self._compare_times(out["time_ns"], raw)
+        self.position_doubts += self._further.against(out["time_ns"], raw)
         out = self._positions_dated(out, raw).drop(pl.selectors.starts_with(_RAW))
         if _AGE in out.columns:
             valid_ns = pl.col("time_ns") - (pl.col(_AGE) * 1e9).round().cast(pl.Int64)
@@ -410,19 +363,6 @@ class Values:
             kind: Kind = "quiet" if str(reason_text).endswith(": empty") or reason_text == NO_PLACE else "row"
             self.tally.add(REQUIRED, str(reason_text), group.height, group[LINE][0], str(group[_EXAMPLE][0]), kind=kind)
         return out.filter(pl.col(_BAD).is_null()).drop(_BAD, _EXAMPLE), left_out(without)
-
-    def _compare_times(self, time_ns: pl.Series, raw: pl.DataFrame) -> None:
-        """Doubt the times where a second column of times says another: the order of names must not decide."""
-        if self._second is None or self._time_apart_s > statements.STALE_AFTER_S:
-            return
-        other_ns, _ = converted(raw, [self._second], self._unit_second)
-        self._time_apart_s = _largest((other_ns - time_ns).cast(pl.Float64) * 1e-9)
-        if self._time_apart_s > statements.STALE_AFTER_S:
-            used = self._mapping.times[0].name
-            self.position_doubts.append(
-                f"{self._path.name}: “{used}” and “{self._second.name}” are two columns of time and {self._time_apart_s:.6g} s apart; "
-                f"{declare(f'time={used}')}, or the other; nothing is shown until it is stated"
-            )
 
     def _without_nowhere(self, part: pl.DataFrame) -> pl.DataFrame:
         """A place that a receiver writes that has none speaks against its row; a receiver without a position is no damage of the file."""
@@ -453,16 +393,6 @@ class Values:
         """Quantity to the column that it was read from and its unit."""
         columns = {c.quantity: f"{c.name}:{c.unit}" for c in self._mapping.columns.values()}
         return columns | {"time": ", ".join(units(self._mapping.times, self._unit))}
-
-    def _look_like_another(self) -> None:
-        """Doubt a position of which two columns say something else: the order of names must not decide."""
-        for column in self._mapping.again:
-            apart_m, used = self._apart_m.get(column.name, 0.0), self._mapping.columns.get(column.quantity)
-            if used is not None and apart_m > _APART_M:
-                self.position_doubts.append(
-                    f"{self._path.name}: “{used.name}” and “{column.name}” are two columns of one quantity and {apart_m:.0f} m apart; "
-                    f"{declare(f'{column.quantity}={used.name}')}, or the other; nothing is shown until it is stated"
-                )
 
     def _look_like_radians(self) -> None:
         """Doubt degrees that could be radians: a flight near 0 N 0 E and a wrong unit look alike, so a person must state the unit."""
@@ -528,10 +458,6 @@ def one_row_a_time(out: pl.DataFrame, tally: Tally) -> Repeats:
     return separated
 
 
-def _no_field(dtype: pl.DataType) -> bool:
-    return dtype.is_nested() or dtype in (pl.Binary, pl.Object, pl.Duration)
-
-
 def _reasons(frame: pl.DataFrame, against: list[tuple[str, pl.Series]]) -> list[pl.Series]:
     """The first reason against each row, and the text at fault; null where there is none."""
     bad = example = pl.repeat(None, frame.height, dtype=pl.String, eager=True)
@@ -559,39 +485,6 @@ def _text(raw: pl.Series, where: pl.Series) -> pl.Series:
     return text.scatter(where.arg_true(), [str(value) for value in raw.filter(where)])
 
 
-def numbers(column: pl.Series, what: Column) -> tuple[pl.Series, pl.Series]:
-    """Values in SI, null where there is none; and why, null where nothing is wrong."""
-    q = QUANTITY[what.quantity]
-    factor = UNITS[q.si][what.unit]
-    if column.dtype == pl.String:
-        text = column.str.strip_chars()
-        # Programs write a missing number as an empty field or as nan: an outage is no damage.
-        text = text.set(text.str.contains(_MISSING), None)
-        raw = text.cast(pl.Float64, strict=False)
-        empty = text.is_null()
-    elif column.dtype.is_numeric() or column.dtype == pl.Null:
-        raw = column.cast(pl.Float64)
-        # A data frame writes a missing number as NaN.
-        empty = raw.is_null() | raw.is_nan()
-    else:
-        raw, empty = pl.Series([None] * len(column), dtype=pl.Float64), column.is_null()
-    frame = pl.DataFrame({"raw": raw, "empty": empty, "si": raw * factor})
-    allowed = f"outside [{q.low / factor:.6g}, {q.high / factor:.6g}] {'' if q.si == '1' else what.unit}".rstrip()
-    # Receivers' integers of 1e-7 degrees are what is so far outside of degrees.
-    in_e7 = f'{allowed}; integers of 1e-7 degrees are declared with --map "{q.name}={what.name}:deg_e7"'
-    whole = pl.col("raw").abs().is_between(1e6, 180e7) & (pl.col("raw").floor() == pl.col("raw")) & pl.lit(what.unit == "deg")
-    frame = frame.select(
-        pl.when(pl.col("si").is_between(q.low, q.high) & pl.col("raw").is_finite()).then("si").alias("value"),
-        pl.when("empty").then(pl.lit("empty"))
-        .when(pl.col("raw").is_null()).then(pl.lit("not a number"))
-        .when(~pl.col("raw").is_finite()).then(pl.lit("not finite"))
-        .when(~pl.col("si").is_between(q.low, q.high) & whole).then(pl.lit(in_e7))
-        .when(~pl.col("si").is_between(q.low, q.high)).then(pl.lit(allowed))
-        .alias("reason"),
-    )  # fmt: skip
-    return frame["value"], frame["reason"]
-
-
 _NAMED = 100
 """Columns that a note names. [1]"""
 
@@ -599,20 +492,3 @@ _NAMED = 100
 def _few(names: list[str]) -> str:
     more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
     return f"{', '.join(names[:_NAMED])}{more}"
-
-
-_ADDRESS = r"^(?:0[xX])?([0-9A-Fa-f]{6})$"
-"""An aircraft's address of 24 bits."""
-
-
-def _name(quantity: str, text: pl.Series) -> pl.Series:
-    """Names that differ in writing alone are one: addresses in small letters, callsigns in capitals without padding."""
-    if quantity == "track":
-        address = text.str.extract(_ADDRESS).str.to_lowercase()
-        return pl.select(pl.coalesce(address, text)).to_series().alias(text.name)
-    return text.str.strip_chars("_ ").str.to_uppercase() if quantity == "callsign" else text
-
-
-def _largest(values: pl.Series) -> float:
-    largest = values.abs().max()
-    return float(largest) if isinstance(largest, (int, float)) else 0.0

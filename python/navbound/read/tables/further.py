@@ -1,0 +1,96 @@
+"""Further columns of a position, a speed or a time that is read: the order of known names must not decide which of them counts."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import polars as pl
+
+from navbound.errors import FormatError
+from navbound.read.checks.statements import STALE_AFTER_S
+from navbound.read.tables.cells import largest, no_field, numbers
+from navbound.read.tables.columns import declare
+from navbound.read.tables.times import TimeFacts, converted, understand
+from navbound.units import EARTH_RADIUS_M
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from navbound.read.tables.columns import Assignment
+
+APART_M = 100.0
+"""Two columns of one position contradict each other beyond it: two antennas and two filters do not. Provenance: ours. [m]"""
+_SCALE_M = {"est_lat_rad": pl.lit(EARTH_RADIUS_M), "est_lon_rad": EARTH_RADIUS_M * pl.col("est_lat_rad").cos()}
+"""Metres of a radian, for the quantities of a position."""
+
+
+class Further:
+    """Compares further columns with those that are read, over all rows: the largest speed counts, positions and times must agree."""
+
+    def __init__(self, path: Path, mapping: Assignment) -> None:
+        self._path, self._mapping = path, mapping
+        self._time = next((column for column in mapping.again if column.quantity == "time"), None)
+        self._facts, self._unit = list[TimeFacts](), ""
+        self._apart_m: dict[str, float] = {}
+        self._apart_s = 0.0
+
+    def see(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
+        """The next rows: those that are read, with the largest speed, and the file's."""
+        for column in self._mapping.again:
+            if column.quantity not in part.columns or no_field(frame.schema[column.name]):
+                continue
+            other, _ = numbers(frame[column.name], column)
+            if column.quantity in _SCALE_M:
+                apart = pl.col(column.quantity) - other
+                apart -= 2.0 * math.pi * (apart / (2.0 * math.pi)).round()
+                apart_m = part.select(apart_m=apart.abs() * _SCALE_M[column.quantity])["apart_m"]
+                self._apart_m[column.name] = max(self._apart_m.get(column.name, 0.0), largest(apart_m))
+            else:
+                part = part.with_columns(pl.max_horizontal(column.quantity, other).alias(column.quantity))
+        return part
+
+    def doubts(self) -> list[str]:
+        """Positions of which two columns say something else, after all rows."""
+        words = []
+        for column in self._mapping.again:
+            apart_m, used = self._apart_m.get(column.name, 0.0), self._mapping.columns.get(column.quantity)
+            if used is not None and apart_m > APART_M:
+                words.append(self._doubt("one quantity", (used.name, column.name), f"{apart_m:.0f} m", column.quantity))
+        return words
+
+    def times(self, frame: pl.DataFrame) -> dict[str, pl.Series]:
+        """The second column of times of the next rows, as it is written; nothing where there is none."""
+        if self._time is None or no_field(frame.schema[self._time.name]):
+            self._time = None
+            return {}
+        self._facts.append(TimeFacts.of(frame, [self._time]))
+        return {self._time.name: frame[self._time.name]}
+
+    def understand(self, dtypes: Mapping[str, pl.DataType]) -> None:
+        """Decide in which unit the second times are written, after all rows; numbers that are no times are compared with nothing."""
+        if self._time is not None:
+            try:
+                # What they may be is no remark on the times that are read.
+                self._unit = understand(TimeFacts.together(self._facts), [self._time], dtypes[self._time.name], self._path, [])
+            except FormatError:
+                self._time = None
+        self._facts = []
+
+    def against(self, time_ns: pl.Series, raw: pl.DataFrame) -> list[str]:
+        """A doubt where the second column says another time than that of the row; once."""
+        if self._time is None or self._apart_s > STALE_AFTER_S:
+            return []
+        other_ns, _ = converted(raw, [self._time], self._unit)
+        self._apart_s = largest((other_ns - time_ns).cast(pl.Float64) * 1e-9)
+        if self._apart_s <= STALE_AFTER_S:
+            return []
+        return [self._doubt("time", (self._mapping.times[0].name, self._time.name), f"{self._apart_s:.6g} s", "time")]
+
+    def _doubt(self, of: str, names: tuple[str, str], apart: str, quantity: str) -> str:
+        used, other = names
+        return (
+            f"{self._path.name}: “{used}” and “{other}” are two columns of {of} and {apart} apart; "
+            f"{declare(f'{quantity}={used}')}, or the other; nothing is shown until it is stated"
+        )
