@@ -267,6 +267,8 @@ class Assignment:
         Columns in which a recorded track states the validity or the integrity of its own positions.
     again : list of Column
         Further columns of a position, a speed or a time that is read and that nobody declared: a known name stands twice.
+    absent : frozenset of str
+        Quantities that no column is to be read as, nor made of others.
     """
 
     columns: dict[str, Column]
@@ -274,6 +276,7 @@ class Assignment:
     unused: list[str]
     statements: list[tuple[str, Kind]] = field(default_factory=list)
     again: list[Column] = field(default_factory=list)
+    absent: frozenset[str] = frozenset()
 
     @property
     def unread(self) -> list[str]:
@@ -365,7 +368,9 @@ def assign(
     known = {"time", "time_ns", *WEEK, *(q.name for q in quantities)}
     beside = {key: value for key, value in (where_present or {}).items() if key in known and _column_named(value, names)[0] in names}
     stated = beside | dict(declared or {})
-    absent = {key for key, value in stated.items() if value == NO_COLUMN and value not in names and key in {q.name for q in quantities}}
+    absent = frozenset(
+        key for key, value in stated.items() if value == NO_COLUMN and value not in names and key in {q.name for q in quantities}
+    )
     for key, value in ((key, value) for key, value in stated.items() if key not in absent):
         column = _declared(key, value, names, path, quantities)
         if column.quantity == "time":
@@ -404,7 +409,7 @@ def assign(
     statements = [(name, kind) for name, kind in kinds.items() if kind is not None]
     stating = {name for name, _ in statements}
     again = _again(columns, times, {*(declared or {}), *beside}, [n for n in free if n not in stating], path)
-    return Assignment(columns, times, [n for n in free if n not in stating], statements, again)
+    return Assignment(columns, times, [n for n in free if n not in stating], statements, again, absent)
 
 
 _COMPARED = ("est_lat_rad", "est_lon_rad", "ground_speed_mps")

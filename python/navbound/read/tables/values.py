@@ -32,7 +32,7 @@ from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, understand, units
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Container, Mapping, Sequence
     from pathlib import Path
 
     from navbound.read.checks.statements import Effect, Stated
@@ -68,7 +68,7 @@ _DIRECTED_MPS = 2.0
 """Slower velocities have no direction. Provenance: ours. [m/s]"""
 
 
-def _with_speed(part: pl.DataFrame) -> pl.DataFrame:
+def _with_speed(part: pl.DataFrame, absent: Container[str]) -> pl.DataFrame:
     """The speed over the ground, the largest that any column states, and its direction, of the velocities where no column states it."""
     if not {"vel_n_mps", "vel_e_mps"} <= set(part.columns):
         return part
@@ -76,9 +76,8 @@ def _with_speed(part: pl.DataFrame) -> pl.DataFrame:
     speeds = [pl.col(name) for name in ("ground_speed_mps",) if name in part.columns]
     tracks = [pl.col(name) for name in ("ground_track_rad",) if name in part.columns]
     whither = pl.when(of_velocity > _DIRECTED_MPS).then(pl.arctan2("vel_e_mps", "vel_n_mps"))
-    return part.with_columns(
-        pl.max_horizontal(*speeds, of_velocity).alias("ground_speed_mps"), pl.coalesce(*tracks, whither).alias("ground_track_rad")
-    ).drop("vel_n_mps", "vel_e_mps")
+    added = [pl.max_horizontal(*speeds, of_velocity).alias("ground_speed_mps"), pl.coalesce(*tracks, whither).alias("ground_track_rad")]
+    return part.with_columns(each for each in added if each.meta.output_name() not in absent).drop("vel_n_mps", "vel_e_mps")
 
 
 _WORDY = r"^[\s#\"(\[]*([A-Za-z°]|1e-7 deg|1?\s*$|-\s*$)"
@@ -150,7 +149,7 @@ class Values:
                 LEVELS + place, f"{heading}: {levels.REASON}", where.height, where[LINE][0], str(where[heading][0]), kind="quiet"
             )
         part = self._with_age(self._with_unread(self._callsigns.as_tracks(part), frame), frame)
-        part = _with_speed(self._further.see(part, frame)).with_columns(*_reasons(frame, against), *self._raw(frame))
+        part = _with_speed(self._further.see(part, frame), self._mapping.absent).with_columns(*_reasons(frame, against), *self._raw(frame))
         for name in POSITION:
             if name in part.columns:
                 self._largest[name] = max(self._largest[name], largest(part[name]))
