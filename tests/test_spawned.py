@@ -66,3 +66,26 @@ def test_ctrl_c_between_the_birth_of_a_child_and_its_first_data_leaves_it_whole(
     program.write_text(INTERRUPTED)
     done = subprocess.run([sys.executable, program], capture_output=True, text=True, timeout=60, check=False)
     assert (done.returncode, done.stderr, sorted(done.stdout.split())) == (0, "", ["interrupted", "worked"])
+
+
+ENDED = """
+import os
+from navbound.scale.spawned import CONTEXT, deaf_to_interrupts
+
+if __name__ == "__main__":
+    lock = deaf_to_interrupts(CONTEXT.Lock)
+    print(os.environ.get("PYTHONWARNINGS"), lock._semlock.name, flush=True)
+    os._exit(130)
+"""
+
+
+@pytest.mark.parametrize("setting", [None, "default"])
+def test_a_process_that_ends_at_once_leaves_no_words_of_others_and_no_semaphores(setting: str | None, tmp_path: Path) -> None:
+    program = tmp_path / "ended.py"
+    program.write_text(ENDED)
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONWARNINGS"}
+    environment |= {} if setting is None else {"PYTHONWARNINGS": setting}
+    done = subprocess.run([sys.executable, program], capture_output=True, text=True, timeout=60, check=False, env=environment)
+    kept, semaphore = done.stdout.split()
+    assert (done.returncode, done.stderr, kept) == (130, "", str(setting))
+    assert not Path("/dev/shm", f"sem.{semaphore.removeprefix('/')}").exists()

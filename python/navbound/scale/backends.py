@@ -100,7 +100,8 @@ def processes(function: Function, pending: Pending, workers: Workers) -> Generat
 
 def _pool(function: Function, left: dict[int, Any], count: int) -> Generator[tuple[int, Any], None, None]:
     others = set(multiprocessing.active_children())
-    with ProcessPoolExecutor(min(count, len(left)), mp_context=CONTEXT, initializer=begin_worker) as pool:
+    begin = partial(ProcessPoolExecutor, min(count, len(left)), mp_context=CONTEXT, initializer=begin_worker)
+    with deaf_to_interrupts(begin) as pool:
         waiting, running = deque(sorted(left)), dict[Future[Any], int]()
         try:
             while waiting or running:

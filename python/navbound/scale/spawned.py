@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
 import signal
 from concurrent.futures import ThreadPoolExecutor
 from multiprocessing import resource_tracker
@@ -35,7 +36,20 @@ def deaf_to_interrupts(start: Callable[[], Started]) -> Started:
 
 def _blocked(start: Callable[[], Started]) -> Started:
     # It unblocks the signal when it starts: before the block.
-    resource_tracker.ensure_running()
+    _track_quietly()
     # A child inherits the mask of the thread that starts it.
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     return start()
+
+
+def _track_quietly() -> None:
+    """Start what clears up semaphores after this process, without its word on them: one that Ctrl-C ends at once leaves them to it."""
+    before = os.environ.get("PYTHONWARNINGS")
+    os.environ["PYTHONWARNINGS"] = ",".join(filter(None, (before, "ignore:resource_tracker:UserWarning")))
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        if before is None:
+            del os.environ["PYTHONWARNINGS"]
+        else:
+            os.environ["PYTHONWARNINGS"] = before
