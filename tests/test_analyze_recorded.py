@@ -9,9 +9,9 @@ import numpy as np
 import polars as pl
 import pytest
 
-from navbound import FormatError, InputError, path
+from navbound import FormatError, InputError, anp, path
 from navbound.read.checks.plausible import check
-from navbound.read.covariance import NACP_EPU_M, NIC_RC_M, circular_sigma, claim
+from navbound.read.covariance import NACP_EPU_M, NIC_RC_M, circular_sigma, claim, nacp_sigma_m
 from navbound.read.tables.epochs import read
 from navbound.records.material import Material
 from navbound.run.analyze import material
@@ -146,6 +146,15 @@ def test_the_radius_factors_are_those_of_the_specification() -> None:
     """Two-dimensional radius factors, spec of the total system error, section 1.5."""
     assert abs(1 / circular_sigma(0.05) - 2.4477468306808165) < 1e-15
     assert abs(1 / circular_sigma(1e-5) - 4.7985259121880812) < 2e-15
+
+
+def test_a_category_whose_limit_is_the_rnp_is_inside_it() -> None:
+    """NACp 6 is an EPU of less than 555.6 m (0.3 NM), 7 of less than 185.2 m (0.1 NM)."""
+    for category, rnp_nm in ((6, 0.3), (7, 0.1), (5, 0.5), (4, 1.0), (3, 2.0), (2, 4.0), (1, 10.0)):
+        radius_m = nacp_sigma_m()[category] / circular_sigma(0.05)
+        assert NACP_EPU_M[category] == pytest.approx(rnp_nm * 1852.0, abs=1e-9)
+        assert 0.0 < rnp_nm * 1852.0 - radius_m < 1e-6
+        assert anp.circle(np.diag([nacp_sigma_m()[category] ** 2] * 2), 0.05) < rnp_nm * 1852.0
 
 
 def test_a_better_category_never_has_a_larger_radius() -> None:

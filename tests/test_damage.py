@@ -61,3 +61,20 @@ def test_a_row_that_is_lost_elsewhere_is_silent(tmp_path: Path) -> None:
 
     judged = Bench(Kind(lambda: CSV, "a.csv", result), tmp_path)  # type: ignore[arg-type]
     assert judged.verdict(replaced(b",50.0100,", b",51.0100,"))[0] == "SILENT"
+
+
+def test_an_exchange_that_the_sums_of_a_frame_cannot_see_is_data(tmp_path: Path) -> None:
+    """Fletcher: an exchange of 32 bytes changes the second sum by 32 times the difference of theirs, here by 256; by 32 in the other."""
+
+    def result(path: Path) -> object:
+        return {("frame", "bytes"): path.read_bytes()}, ()
+
+    for last, verdict in ((8, "data"), (1, "WRONG")):
+        body = b"\x02\x15" + (64).to_bytes(2, "little") + bytes(32) + bytes([*bytes(31), last])
+        first = second = 0
+        for byte in body:
+            first, second = (first + byte) % 256, (second + first + byte) % 256
+        frame = b"\xb5b" + body + bytes([first, second])
+        bench = Bench(Kind(lambda frame=frame: frame, "r.ubx", result, "record", binary=True), tmp_path)  # type: ignore[misc, arg-type]
+        swapped = frame[:6] + frame[38:70] + frame[6:38] + frame[70:]
+        assert bench.verdict(Damage("swapped", swapped, 6, 70))[0] == verdict

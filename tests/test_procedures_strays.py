@@ -192,6 +192,27 @@ def test_a_track_that_ends_shortly_before_the_runway_is_inside_and_says_so(tmp_p
     assert "before the end of the procedure" in verdict.words
 
 
+def test_a_track_that_begins_in_the_middle_of_the_procedure_says_where(tmp_path: Path) -> None:
+    verdict = judged(flown()[-30:], tmp_path).verdict
+    assert (verdict.id, verdict.n_epochs) == ("inside", 30)
+    assert verdict.beside is not None
+    # The last 30 of 147 rows of the whole flight, 15.89 NM, which ends within 35 m of the runway. A row is 2 s apart at 62.5 to 124 m/s.
+    assert verdict.beside.begin_m is not None
+    assert 15.89 * NM - 30 * 2.0 * 124.0 < verdict.beside.begin_m < 15.89 * NM - 29 * 2.0 * 62.5
+    assert f"judged on a part of the procedure alone, from {verdict.beside.begin_m / NM:.3g} NM after its begin on" in verdict.words
+
+
+def test_a_position_that_is_led_ahead_along_the_path_is_not_believed(tmp_path: Path) -> None:
+    # 80 m/s more than its speed of 124 m/s, westwards along the final approach, from row 90 on.
+    east_deg = -160.0 * NORTH_DEG_PER_M / np.cos(np.radians(45.0))
+    led = pl.Series(np.maximum(np.arange(147) - 90.0, 0.0)) * east_deg
+    verdict = judged(flown().with_columns(pl.col("lon_deg") + led), tmp_path).verdict
+    assert verdict.id == "not_shown"
+    # 80 t > 9.2 (t + 8) + 1340 m: within 21 s, 11 rows, and 8 s between places.
+    assert verdict.n_reason["position_ahead"] > 10
+    assert verdict.n_judged <= 90 + 11 + 4
+
+
 def damaged(folder: Path, change: Callable[[list[str]], None], *, pack: bool = False) -> Path:
     lines = DATABASE.read_text(encoding="ascii").splitlines(keepends=True)
     change(lines)

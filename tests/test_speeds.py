@@ -112,3 +112,22 @@ def test_turns_of_an_aircraft_are_no_shorter_way(tmp_path: Path) -> None:
         rows.append(f"2026-11-22T12:{k // 60:02d}:{k % 60:02d}Z,{lat:.8f},{lon:.8f},2,2,60")
     (tmp_path / "a.csv").write_text("\n".join(rows) + "\n")
     assert navbound.analyze(tmp_path / "a.csv").summary.verdict.position_doubts == []
+
+
+@pytest.mark.parametrize(("led_mps", "ahead"), [(80.0, True), (30.0, True), (5.0, False)])
+def test_a_lead_of_a_minute_is_seen_without_a_track_column(tmp_path: Path, led_mps: float, ahead: bool) -> None:
+    """124 m/s by its word: 30 t > 9.2 t + 1340 m after 65 s; 5 m/s are within the 9.2 m/s that nothing shows."""
+    file = tmp_path / "a.csv"
+    rows = ["time,lat_deg,lon_deg,h_m,cov_ee_m2,cov_en_m2,cov_nn_m2,speed_mps"]
+    for k in range(N):
+        lat = 49.0 + (124.0 * k + led_mps * min(max(k - 100, 0), 100)) / M_PER_DEG
+        rows.append(f"2026-11-22T12:{k // 60:02d}:{k % 60:02d}Z,{lat:.8f},2.5,100.0,4.0,0.0,4.0,124.0")
+    file.write_text("\n".join(rows) + "\n")
+    run = navbound.analyze(file)
+    assert bool(run.summary.verdict.n_reason.get("position_ahead", 0)) == ahead
+    assert (run.summary.verdict.id == "inside") == (not ahead)
+    marked = (run.epochs["reason_id"] == "position_ahead").fill_null(value=False)
+    # None before the lead, and none more than the 128 s that a place is remembered after it.
+    assert not marked[:100].any()
+    assert not marked[330:].any()
+    assert ("further on than the speeds reported" in " ".join(run.summary.assumptions)) == ahead

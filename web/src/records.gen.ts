@@ -511,6 +511,8 @@ export interface BesideProcedure {
     short: "ends" | "leaves" | null;
     /** How far before the end of the procedure it does so; None where that is not defined. */
     short_m: number | null;
+    /** How far after the begin of the procedure the latest of the flights is first judged, where it is more than a nautical mile. */
+    begin_m: number | null;
     /** Why the legs may not be the whole procedure; the verdict cannot be "inside" beside one. */
     doubts: string[];
 }
@@ -533,6 +535,8 @@ export interface ProcedureFlown {
     end: "reached" | "ends" | "leaves";
     /** How far before the end of the procedure the last position near the path is; None beyond it, or where that is not defined. */
     short_m: number | null;
+    /** How far after the begin of the procedure the first position judged is; None where that is not defined. */
+    begin_m: number | null;
     n_bound: number;
     n_bound_inside: number;
     n_bound_inside_twice: number;

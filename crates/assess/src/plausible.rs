@@ -6,6 +6,7 @@
 mod repeats;
 
 use navbound_core::frame::EcefPosition;
+use navbound_core::monitor::ahead::Ahead;
 use navbound_core::monitor::motion::{Between, Gone, LastSpeed, repeated, sea_level, within};
 use navbound_core::monitor::way::Way;
 use navbound_core::quantity::{GpsTime, OutOfDomain};
@@ -47,7 +48,8 @@ pub struct Judged {
 /// that comes back to the bits of one of the last two different positions, and every one of a track that never leaves its first while its reports come
 /// faster than a receiver computes: by time stamps that crawl nothing would ever be old. A speed that fell faster than an aircraft brakes is no speed, and
 /// the time in which the aircraft said that it stood is no time to fly in; noise of decimetres on such a hold changes nothing. Where the aircraft says that it moves, a position that makes good
-/// less than half the way by its reported speed, the noise taken off, is stale, too: noise on a held position is no flight.
+/// less than half the way by its reported speed, the noise taken off, is stale, too: noise on a held position is no flight. One that makes good
+/// more than that way over 20 s to two minutes is ahead ([`Ahead`]).
 ///
 /// Provenance: ours.
 ///
@@ -153,6 +155,7 @@ pub struct Track {
     jumped: Option<GpsTime>,
     window: Option<Window>,
     way: Way,
+    ahead: Ahead,
     repeats: Repeats,
     gone: Gone,
     speed: LastSpeed,
@@ -178,6 +181,7 @@ impl Track {
             jumped: None,
             window: None,
             way: Way::default(),
+            ahead: Ahead::default(),
             repeats: Repeats::default(),
             gone: Gone::default(),
             speed: LastSpeed::default(),
@@ -224,6 +228,7 @@ impl Track {
         let Some((fix, from)) = self.last else {
             self.last = Some((*report, here));
             self.window = Some(Window::begin(report, here));
+            self.ahead.is_ahead(report, &here, false, limits);
             self.gone.step(report, false, limits);
             let finding = report.with_age(if self.frozen { Finding::Stale } else { Finding::Plausible }, limits);
             return Ok(Judged { finding, age_s: report.age_s(), step_m: 0.0, too_fast_mps: 0.0, speed_doubted });
@@ -256,17 +261,18 @@ impl Track {
             self.last = Some((*report, here));
         }
         let stands_s = self.gone.stands_falsely(report, limits);
+        let ahead = self.ahead.is_ahead(report, &here, unchanged, limits);
         let returned = repeated(report, repeated_since, &Gone::default(), limits) == Finding::Stale && report.speed_mps.is_nan();
-        if finding != Finding::Jump && (behind.or(stands_s).is_some() || returned || self.frozen) {
-            finding = Finding::Stale;
+        let stands = behind.or(stands_s).is_some() || returned || self.frozen;
+        finding = finding.with_way(stands, ahead);
+        if finding == Finding::Jump {
+            self.ahead = Ahead::default();
+        } else if stands {
             age_s = age_s.max(behind.or(stands_s).unwrap_or_else(|| report.time.seconds_since(repeated_since)));
         }
         (finding, age_s) = (report.with_age(finding, limits), age_s.max(report.age_s()));
         let settling = self.jumped.is_some_and(|t| within(report.time, t, limits.settle_s));
-        if settling && matches!(finding, Finding::Plausible | Finding::Repeated | Finding::Late) {
-            finding = Finding::Unsettled;
-        }
-        Ok(Judged { finding, age_s, step_m, too_fast_mps, speed_doubted })
+        Ok(Judged { finding: finding.settling(settling), age_s, step_m, too_fast_mps, speed_doubted })
     }
 }
 

@@ -3,7 +3,9 @@
 use crate::codec::{Damaged, Reader, Writer};
 use crate::order::Waiting;
 use crate::output::Kind;
+use navbound_core::frame::EcefPosition;
 use navbound_core::judge::{self, Judge};
+use navbound_core::monitor::ahead::{Ahead, Reached};
 use navbound_core::monitor::motion::{Fall, Gone, LastSpeed, Motion, Owed, Report};
 use navbound_core::monitor::neighbours::{Height, Neighbours, Place};
 use navbound_core::monitor::way::{Mark, Way};
@@ -99,6 +101,15 @@ impl Track {
         for each in self.motion.way.marks {
             to.option(each, mark);
         }
+        let ahead = &self.motion.ahead;
+        to.option(ahead.last, |to, (time, speed_mps)| {
+            to.i64(time.nanoseconds());
+            to.f64(speed_mps);
+        });
+        to.f64(ahead.reported_m);
+        for each in ahead.places {
+            to.option(each, reached);
+        }
         to.option(self.motion.speed.reported, |to, (time, speed_mps)| {
             to.i64(time.nanoseconds());
             to.f64(speed_mps);
@@ -150,8 +161,13 @@ impl Track {
         for each in &mut way.marks {
             *each = from.option(read_mark)?;
         }
+        let last_speed = from.option(|from| Ok((GpsTime::from_nanoseconds(from.i64()?), from.f64()?)))?;
+        let mut ahead = Ahead { last: last_speed, reported_m: from.f64()?, ..Ahead::default() };
+        for each in &mut ahead.places {
+            *each = from.option(read_reached)?;
+        }
         let reported = from.option(|from| Ok((GpsTime::from_nanoseconds(from.i64()?), from.f64()?)))?;
-        let motion = Motion { last: last_different, anchor, jumped, gone, height, way, speed: LastSpeed { reported } };
+        let motion = Motion { last: last_different, anchor, jumped, gone, height, way, ahead, speed: LastSpeed { reported } };
         let place = |from: &mut Reader<'_>| {
             let time = GpsTime::from_nanoseconds(from.i64()?);
             Ok(Place { time, lat_rad: from.f64()?, lon_rad: from.f64()?, variance_m2: from.f64()? })
@@ -181,6 +197,18 @@ fn mark(to: &mut Writer, mark: Mark) {
 
 fn read_mark(from: &mut Reader<'_>) -> Result<Mark, Damaged> {
     Ok(Mark { time: GpsTime::from_nanoseconds(from.i64()?), moved_m: from.f64()?, reported_m: from.f64()? })
+}
+
+fn reached(to: &mut Writer, reached: Reached) {
+    to.i64(reached.time.nanoseconds());
+    reached.place.vector().iter().for_each(|number| to.f64(*number));
+    to.f64(reached.reported_m);
+}
+
+fn read_reached(from: &mut Reader<'_>) -> Result<Reached, Damaged> {
+    let time = GpsTime::from_nanoseconds(from.i64()?);
+    let place = EcefPosition::from_vector([from.f64()?, from.f64()?, from.f64()?].into());
+    Ok(Reached { time, place, reported_m: from.f64()? })
 }
 
 fn height(to: &mut Writer, height: Height) {

@@ -198,7 +198,7 @@ impl PlausibleTrack {
         self.survey.see(&reports_of(&reports)?).map_err(|(index, e)| input_error(e, Some(index)))
     }
 
-    /// Finding (0 plausible, 1 held, 2 stale, 3 jump, 4 unsettled, 5 late), step [m], speed of a step that is too fast [m/s].
+    /// Finding (0 plausible, 1 held, 2 stale, 3 jump, 4 unsettled, 5 late, 6 ahead), step [m], speed of a step that is too fast [m/s].
     /// Whether the reported speed was not believed. `after_mps` are speeds of the reports after these, as many as [`SPEEDS_BESIDE`].
     fn judge<'py>(&mut self, py: Python<'py>, reports: Reports<'py>, after_mps: Vec<f64>) -> PyResult<Bound<'py, PyDict>> {
         let track = self.track.get_or_insert_with(|| Track::new(std::mem::take(&mut self.survey), &self.limits));
@@ -210,6 +210,7 @@ impl PlausibleTrack {
             Finding::Jump => 3,
             Finding::Unsettled => 4,
             Finding::Late => 5,
+            Finding::Ahead => 6,
         };
         let d = PyDict::new(py);
         d.set_item("finding", judged.iter().map(|j| code(j.finding)).collect::<Vec<_>>().into_pyarray(py))?;

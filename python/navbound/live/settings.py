@@ -13,7 +13,7 @@ from navbound.errors import FormatError, InputError
 from navbound.live import statements, zones
 from navbound.live.zones import path_of
 from navbound.read.checks.plausible import Limits
-from navbound.read.covariance import NACP_EPU_M, NIC_RC_M, SIL_RISK, circular_sigma
+from navbound.read.covariance import NIC_RC_M, SIL_RISK, nacp_sigma_m
 from navbound.read.receivers import MESSAGES
 
 if TYPE_CHECKING:
@@ -163,7 +163,8 @@ class Settings:
 
     def _claims(self) -> tuple[list[float], list[float], int]:
         """Standard deviation of an axis by NACp and radius of containment by NIC, and the least SIL whose risk is small enough. [m]."""
-        sigma_m = [NACP_EPU_M.get(category, math.nan) * circular_sigma(0.05) for category in range(12)]
+        sigma_of = nacp_sigma_m()
+        sigma_m = [sigma_of.get(category, math.nan) for category in range(12)]
         sure = [level for level, risk in SIL_RISK.items() if risk <= self.risk_integrity]
         # A level above the highest is none: nothing is believed then.
         return sigma_m, [NIC_RC_M.get(category, math.nan) for category in range(12)], min(sure, default=max(SIL_RISK) + 1)

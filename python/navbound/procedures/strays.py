@@ -46,6 +46,8 @@ class Stretch:
     short_m : float
         How far before the end of the procedure the last position near the path is, of a flight that leaves it the last established one;
         infinite or NaN where that is not defined. [m]
+    begin_m : float
+        How far after the begin of the procedure the first established position is; infinite or NaN where that is not defined. [m]
     due_s : float
         How long after the last position the end of the procedure was due, at the mean speed along it; 0 where it is not. [s]
     """
@@ -54,6 +56,7 @@ class Stretch:
     last: int
     end: Literal["reached", "ends", "leaves"]
     short_m: float
+    begin_m: float
     due_s: float
 
 
@@ -110,7 +113,8 @@ def _stretch(procedure: Procedure, followed: Followed, time_s: Floats, ok: Indic
     reached = reached or math.isinf(procedure.legs[followed.leg[near]].length_m)
     end: Literal["reached", "ends", "leaves"] = "reached" if reached else "leaves" if leaves else "ends"
     short_m = float(left_m[last_ok if leaves else near])
-    return Stretch(int(ok[0]), last, end, short_m, float(due_s) if known else 0.0)
+    begin_m = _before(procedure, followed, int(ok[0]))
+    return Stretch(int(ok[0]), last, end, short_m, begin_m, float(due_s) if known else 0.0)
 
 
 def _left(procedure: Procedure, followed: Followed) -> Floats:
@@ -119,6 +123,12 @@ def _left(procedure: Procedure, followed: Followed) -> Floats:
     after = np.append(np.cumsum(lengths[::-1])[::-1], 0.0)
     left = after[followed.leg] - followed.along_leg_m
     return np.where(followed.leg < 0, np.nan, np.maximum(left, 0.0))
+
+
+def _before(procedure: Procedure, followed: Followed, row: int) -> float:
+    """Distance of a position from the begin of the procedure along its legs; infinite or NaN where one of them has no length [m]."""
+    lengths = [0.0 if leg.state == "point" else leg.length_m for leg in procedure.legs[: followed.leg[row]]]
+    return max(float(sum(lengths) + followed.along_leg_m[row]), 0.0)
 
 
 def _speed(left_m: tuple[float, float], time_s: float) -> float:

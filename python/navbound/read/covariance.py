@@ -66,6 +66,14 @@ HOLD_S = 300.0
 """How long a quality indicator counts after it was received. Provenance: ours."""
 
 
+def nacp_sigma_m() -> dict[int, float]:
+    """Give sigma of one axis for every NACp that has one.
+
+    An EPU is less than the limit that its NACp stands for: the 95 % circle of this sigma, which is right to 1e-12, is so, too.
+    """
+    return {category: epu_m * (1.0 - 1e-11) * circular_sigma(0.05) for category, epu_m in NACP_EPU_M.items()}
+
+
 def circular_sigma(risk: float) -> float:
     """Give sigma of one axis as a share of the radius that a circular normal error exceeds with `risk`: 1 / sqrt(-2 ln risk)."""
     return 1.0 / math.sqrt(-2.0 * math.log(risk))
@@ -226,7 +234,7 @@ def _coded(epochs: pl.DataFrame, have: set[str]) -> Claimed:
     if "epu_m" in have:
         return _circle(epochs, pl.col("epu_m") * k95, f"Covariance: circular, sigma = EPU / {1 / k95:.4f} (EPU is the 95 % radius).", "epu")
     if "nac_p" in have:
-        sigma = _in_force("nac_p").replace_strict(NACP_EPU_M, default=None, return_dtype=pl.Float64) * k95
+        sigma = _in_force("nac_p").replace_strict(nacp_sigma_m(), default=None, return_dtype=pl.Float64)
         words = (
             f"Covariance: circular, sigma = EPU / {1 / k95:.4f}, EPU being the upper limit that NACp stands for {coding}; an indicator "
             f"counts for {HOLD_S:g} s after it was received."

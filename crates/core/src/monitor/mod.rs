@@ -1,5 +1,6 @@
 //! Whether to tell the crew: the RNP monitor, what its risk means over an hour, and the RNP-state classifier.
 
+pub mod ahead;
 pub mod altimeter;
 mod clock;
 pub mod consistency;

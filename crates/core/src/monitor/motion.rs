@@ -3,6 +3,7 @@
 //! A position report does not show whether it is true: a decoder or a receiver repeats the last position when none arrives, and a falsified
 //! receiver jumps. Both leave a track that no bound of the navigation error covers.
 
+use super::ahead::Ahead;
 use super::clock::arrival;
 use super::neighbours::{Height, Place, east_north_m, one_height, one_place};
 use super::way::Way;
@@ -86,9 +87,31 @@ pub enum Finding {
     Jump,
     /// Within the settling time after a jump.
     Unsettled,
+    /// Further on than the reported speeds lead.
+    Ahead,
 }
 
 impl Finding {
+    /// A finding, with whether the position stands falsely, or is ahead, by the speeds reported on the way to it.
+    #[must_use]
+    pub const fn with_way(self, stands: bool, ahead: bool) -> Self {
+        match self {
+            Self::Jump => self,
+            _ if stands => Self::Stale,
+            _ if ahead => Self::Ahead,
+            _ => self,
+        }
+    }
+
+    /// A finding, where a jump may not have settled.
+    #[must_use]
+    pub const fn settling(self, settling: bool) -> Self {
+        match self {
+            Self::Plausible | Self::Repeated | Self::Late if settling => Self::Unsettled,
+            _ => self,
+        }
+    }
+
     /// Why the position is not to be believed; `None` where nothing is against it.
     pub const fn reason(self) -> Option<Reason> {
         match self {
@@ -98,6 +121,7 @@ impl Finding {
             Self::Late => Some(Reason::PositionLate),
             Self::Jump => Some(Reason::PositionJump),
             Self::Unsettled => Some(Reason::PositionNotSettled),
+            Self::Ahead => Some(Reason::PositionAhead),
         }
     }
 }
@@ -362,6 +386,8 @@ pub struct Motion {
     pub height: Option<Height>,
     /// The way that it made good.
     pub way: Way,
+    /// The way that it may have made good at most.
+    pub ahead: Ahead,
     /// The last speed that it reported.
     pub speed: LastSpeed,
 }
@@ -377,6 +403,7 @@ impl Motion {
         let Some((from, seen)) = self.last.zip(self.gone.seen) else {
             (self.last, self.anchor, self.height) = (Some(*report), Some(*report), report.height);
             self.way.is_behind(report, limits)?;
+            self.ahead.is_ahead(report, &here, false, limits);
             self.gone.step(report, false, limits);
             return Ok(report.with_age(Finding::Plausible, limits));
         };
@@ -399,14 +426,17 @@ impl Motion {
                 self.stepped(&from, report, &here, stood_s, limits)?
             };
             let behind = self.way.is_behind(report, limits)?.is_some();
-            let stands = step != Finding::Jump && (behind || self.gone.stands_falsely(report, limits).is_some());
-            report.with_age(if stands { Finding::Stale } else { step }, limits)
+            let ahead = self.ahead.is_ahead(report, &here, unchanged, limits);
+            let stands = behind || self.gone.stands_falsely(report, limits).is_some();
+            report.with_age(step.with_way(stands, ahead), limits)
         };
         if finding == Finding::Jump {
             self.dispute(report.time);
+            // What comes after a jump is judged from there.
+            self.ahead = Ahead::default();
         }
         let settling = self.jumped.is_some_and(|jump| within(report.time, jump, limits.settle_s));
-        Ok(if settling && !matches!(finding, Finding::Jump | Finding::Stale) { Finding::Unsettled } else { finding })
+        Ok(finding.settling(settling))
     }
 
     /// What the source says of this time contradicts itself: nothing is believed until it has settled.

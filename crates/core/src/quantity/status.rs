@@ -156,6 +156,8 @@ reasons! {
         "a step that can be flown only if the position before was older than a held one may be";
     /// A step that no aircraft flies.
     PositionJump, "position_jump", InvalidInput, "position jump that cannot be flown";
+    /// Small steps that add up to what no aircraft flies at its speed.
+    PositionAhead, "position_ahead", InvalidInput, "position further on than the reported speeds lead";
     /// Shortly after such a step.
     PositionNotSettled, "position_not_settled", InvalidInput, "not settled after a position jump";
     /// No covariance at all.

@@ -129,3 +129,28 @@ fn positions_that_were_not_used_are_counted_by_their_reason() {
     let restored = Lane::restore(lane.settings.clone(), &lane.snapshot(0, 0)).unwrap().0;
     assert_eq!(counted(&restored), expected);
 }
+
+/// 64 m/s by its word; led by 60 m/s more from 60 s on. From the place of 48 s, 60 (t - 60) > (3.2 + 3) (t - 48) + 640 + 100 first at 76 s; that of
+/// 56 s is judged from 76 s on.
+#[test]
+fn a_position_that_is_led_ahead_of_its_speed_is_not_believed() {
+    let place = |k: u32| 0.5 + (64.0 * f64::from(k) + 60.0 * f64::from(k.saturating_sub(60))) / 6.37e6;
+    let lines = (0..200).map(|k| line("d", f64::from(k), &placed(place(k), SPEED)));
+    let (epochs, lane) = from_file(lines.clone());
+    let first = epochs.iter().position(|e| e.reason == Some(Reason::PositionAhead)).unwrap();
+    assert_eq!(first, 76);
+    assert!(epochs[..first].iter().all(|e| e.reason.is_none()));
+    assert!(epochs[first..].iter().all(|e| (e.status, e.reason) == (Status::InvalidInput, Some(Reason::PositionAhead))));
+    assert_eq!(epochs[199].alert, rnp::Alert::Unavailable);
+    // A lane that goes on from its snapshot says the same.
+    let base = lane.settings.clone();
+    let (mut begun, mut all) = (Lane::new(base.clone()).unwrap(), Vec::new());
+    for (k, text) in lines.enumerate() {
+        if k == 70 {
+            begun = Lane::restore(base.clone(), &begun.snapshot(0, 0)).unwrap().0;
+        }
+        begun.step(&Input::Chunk { arrival: None, bytes: text.as_bytes() }, &mut all);
+    }
+    begun.step(&Input::End { arrival: None }, &mut all);
+    assert_eq!(epochs_of(&all, "d").iter().map(|e| e.reason).collect::<Vec<_>>(), epochs.iter().map(|e| e.reason).collect::<Vec<_>>());
+}

@@ -56,7 +56,7 @@ class Limits:
 
 _UNDATED = -(2**63)
 
-_REASON_ID = [None, "position_held", "position_stale", "position_jump", "position_not_settled", "position_late"]
+_REASON_ID = [None, "position_held", "position_stale", "position_jump", "position_not_settled", "position_late", "position_ahead"]
 """What the core found, by its codes."""
 _JUMP = _REASON_ID.index("position_jump")
 
@@ -67,7 +67,7 @@ class Plausibility:
 
     Attributes
     ----------
-    n_repeated, n_stale, n_jump, n_unsettled, n_late : int
+    n_repeated, n_stale, n_jump, n_unsettled, n_late, n_ahead : int
         Epochs by finding.
     n_fast : int
         Steps faster than the aircraft's own speed allows in the time between the positions.
@@ -88,6 +88,7 @@ class Plausibility:
     n_jump: int
     n_unsettled: int
     n_late: int
+    n_ahead: int
     n_fast: int
     fastest_mps: float
     n_speed_doubted: int
@@ -97,10 +98,10 @@ class Plausibility:
 
 
 def plausible_rows(epochs: pl.DataFrame) -> pl.Expr:
-    """Rows against whose positions nothing is known, after :func:`check`; what is said of the others is not said again."""
+    """Rows against whose positions nothing is known but their speeds, after :func:`check`; what is said of the others is not said again."""
     if "reason_id" not in epochs.columns:
         return pl.lit(value=True)
-    return ~pl.col("reason_id").is_in([id_ for id_ in _REASON_ID if id_]).fill_null(value=False)
+    return ~pl.col("reason_id").is_in([id_ for id_ in _REASON_ID if id_ not in {None, "position_ahead"}]).fill_null(value=False)
 
 
 def unreachable(rows: pl.DataFrame, lat: str, lon: str, limits: Limits) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
@@ -219,6 +220,8 @@ class Checker:
                 f" {self._n_fast} steps are faster than the aircraft's own speed in the time between the positions, the fastest "
                 f"{fastest:.0f} m/s; {n[5]} of them need a position that was older than {limits.stale_after_s:g} s and are marked."
             )
+        if n[6]:
+            words += f" {n[6]} positions are further on than the speeds reported on the way to them lead."
         if self._n_doubted:
             words += f" {self._n_doubted} reported speeds are beyond what the speeds beside them allow, and were not used."
         if self._n_dated:
@@ -232,10 +235,9 @@ class Checker:
                     f" The others are up to {self._oldest_s:.2g} s old, in which the aircraft moved up to {self._furthest_m:.0f} m: a "
                     "bound is of the time of the position, a truth of the time of the row."
                 )
-        repeated, stale, jump, unsettled, late = (int(k) for k in n[1:])
-        return Plausibility(
-            repeated, stale, jump + self._n_twice, unsettled, late, self._n_fast, fastest, self._n_doubted, n_steps, largest, words
-        )
+        repeated, stale, jump, unsettled, late, ahead = (int(k) for k in n[1:])
+        found = (repeated, stale, jump + self._n_twice, unsettled, late, ahead)
+        return Plausibility(*found, self._n_fast, fastest, self._n_doubted, n_steps, largest, words)
 
 
 def _columns(epochs: pl.DataFrame) -> pl.DataFrame:

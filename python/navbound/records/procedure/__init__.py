@@ -94,6 +94,8 @@ class BesideProcedure(Record):
     """What the earliest of them does."""
     short_m: float | None = None
     """How far before the end of the procedure it does so; None where that is not defined."""
+    begin_m: float | None = None
+    """How far after the begin of the procedure the latest of the flights is first judged, where it is more than a nautical mile."""
     doubts: list[str] = Field(default_factory=list)
     """Why the legs may not be the whole procedure; the verdict cannot be "inside" beside one."""
 
@@ -117,6 +119,8 @@ class ProcedureFlown(Record):
     """Whether a position beyond the end of the procedure follows, the track ends before it, or the aircraft has left the path."""
     short_m: float | None = None
     """How far before the end of the procedure the last position near the path is; None beyond it, or where that is not defined."""
+    begin_m: float | None = None
+    """How far after the begin of the procedure the first position judged is; None where that is not defined."""
     n_bound: int = 0
     n_bound_inside: int = 0
     n_bound_inside_twice: int = 0

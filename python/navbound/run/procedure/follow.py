@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     from navbound.run.procedure.flown import Flown
 
 
+LATE_M = METRES_PER_NM
+"""A flight that is judged from more than this after the begin of its procedure on is judged on a part of it (ours). [m]"""
 SHORT_M = 0.1 * METRES_PER_NM
 """A flight whose last position is so far before the end of its procedure ends before it (ours). [m]"""
 
@@ -144,6 +146,7 @@ def _beside(n_recorded: int, n_status: Counter[str], flights: list[ProcedureFlow
         n_short=len(short),
         short=None if earliest is None or earliest.end == "reached" else earliest.end,
         short_m=None if earliest is None else earliest.short_m,
+        begin_m=max((each.begin_m for each in flights if each.begin_m is not None and each.begin_m > LATE_M), default=None),
         doubts=list(procedure.doubts),
     )
 

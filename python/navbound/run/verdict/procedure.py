@@ -26,7 +26,13 @@ def beside_procedure_words(beside: BesideProcedure | None) -> str:
     n = sum(beside.n_status.values())
     kinds = ", ".join(f"{count} {_BESIDE.get(status, status)}" for status, count in beside.n_status.items())
     apart = f"; {n} of {beside.n_recorded} recorded positions are no part of this and are not judged ({kinds})" if n else ""
-    return f"{_short(beside)}{apart}"
+    return f"{_late(beside)}{_short(beside)}{apart}"
+
+
+def _late(beside: BesideProcedure) -> str:
+    if beside.begin_m is None:
+        return ""
+    return f"; judged on a part of the procedure alone, from {length(beside.begin_m)} after its begin on"
 
 
 def _short(beside: BesideProcedure) -> str:
