@@ -24,6 +24,8 @@ class Call:
     function: Callable[..., Any]
     numbers: dict[str, Any]
     fixed: dict[str, Any] = field(default_factory=dict)
+    made_of: Callable[..., Any] | None = None
+    """The class whose parameters these are, where the function makes an object and uses it."""
 
     def __call__(self, **changed: Any) -> Any:
         return self.function(**{**self.numbers, **self.fixed, **changed})

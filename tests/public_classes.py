@@ -98,7 +98,7 @@ def fused(**parts: Any) -> ins.Fused:
 
 def of_class(cls: Callable[..., Any], use: Callable[[Any], Any], **numbers: Any) -> Call:
     """Make an object from numbers and use it: the numbers are checked at the latest then."""
-    return Call(lambda **arguments: use(cls(**arguments)), numbers)
+    return Call(lambda **arguments: use(cls(**arguments)), numbers, made_of=cls)
 
 
 def part(cls: Callable[..., Any], name: str, **numbers: Any) -> Call:

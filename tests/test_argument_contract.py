@@ -98,6 +98,41 @@ def test_an_abused_argument_brings_no_foreign_exception(name: str, argument: str
     assert {abuse: result for abuse, result in results.items() if result not in {"ok", "refused"}} == {}
 
 
+OF_ANY_KIND: dict[str, Any] = {
+    "True": True,
+    "3": 3,
+    "a half": 0.5,
+    "NaN": np.nan,
+    "eight bits": np.uint8(1),
+    "200 in eight bits": np.uint8(200),
+    "single precision": np.float32(0.5),
+    "two truth values": np.array([True, False]),
+    "object": object(),
+    "text": "abc",
+    "bytes": b"1",
+    "None": None,
+    "nothing": [],
+    "a number in a list": [1.0],
+    "dict": {},
+}
+"""For arguments that are no numbers, or seldom passed: some kind is right, none brings a foreign exception."""
+ALL_CALLS = {name: (call, call.function) for name, call in CALLS.items()} | {
+    name: (call, call.made_of or call.function) for name, call in CLASSES.items()
+}
+
+
+@pytest.mark.parametrize("name", ALL_CALLS)
+def test_no_argument_of_any_kind_brings_a_foreign_exception(name: str) -> None:
+    call, function = ALL_CALLS[name]
+    foreign: dict[tuple[str, str], str] = {}
+    for parameter in inspect.signature(function).parameters.values():
+        if parameter.kind not in {parameter.VAR_KEYWORD, parameter.VAR_POSITIONAL}:
+            with np.errstate(all="ignore"):
+                results = {kind: outcome(call, parameter.name, value) for kind, value in OF_ANY_KIND.items()}
+            foreign |= {(parameter.name, kind): result for kind, result in results.items() if result not in {"ok", "refused"}}
+    assert foreign == {}
+
+
 NONE_ALLOWED = {
     *(("rnp.Monitor.step", name) for name in ("rnp_m", "tse_exact_m", "tse_exact_integrity_m", "fte_m", "hpl_m")),
     ("ins.Imu", "interval_s"),

@@ -268,7 +268,9 @@ def select(
     if course_rad is not None and not np.isfinite(course).all():
         raise InputError("course_rad", "a value that is not finite", domain="finite courses")
     sigmas = (sigma_bearing_rad, sigma_altitude_m)
-    selection = _core.dme_along((lat, lon, h), time.astype(np.int64), course, _core_network(network), sigmas, switching)
+    selection = _core.dme_along(
+        (lat, lon, h), time.astype(np.int64), course, _core_network(network), sigmas, (float(switching[0]), float(switching[1]))
+    )
     return Selection(**selection)
 
 

@@ -92,6 +92,7 @@ class Path:
         """Where the waypoints lie along the path [m]; one that is flown by counts at the middle of its turn."""
         return np.array(self._core.waypoints_along_m)
 
+    @checked
     def project(self, lat_rad: ArrayLike, lon_rad: ArrayLike, *, near_along_m: float | None = None) -> Feet:
         """Feet of positions on the path.
 

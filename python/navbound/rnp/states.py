@@ -81,6 +81,7 @@ class StateClassifier:
     priors and memory. As probabilities of the state use `probabilities`, which comes from the law of the error.
     """
 
+    @checked
     def __init__(self, levels_nm: Sequence[float], fte_nm: float | Sequence[float] = 0.0, *, require_order: bool = True) -> None:
         shape, (levels, fte) = flatten(levels_nm=(levels_nm, ()), fte_nm=(fte_nm, ()))
         if len(shape) != 1:
@@ -89,6 +90,7 @@ class StateClassifier:
         self._set(boundary_m, [f"RNP {level:g}" for level in levels], require_order)
 
     @classmethod
+    @checked
     def of_boundaries(cls, boundary_m: ArrayLike, names: Sequence[str] | None = None, *, require_order: bool = True) -> StateClassifier:
         """Build the classifier of given boundaries of navigation error.
 

@@ -60,18 +60,28 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
     @functools.wraps(function)
     def checking(*args: P.args, **kwargs: P.kwargs) -> R:
         by_name = checks()
+        of_numpy = False
         for name, value in [*zip(names(), args, strict=False), *kwargs.items()]:
             if name in by_name:
                 check, takes_floats = by_name[name]
                 # A plain number is what is passed most, and no check of numbers refuses it.
                 if not (takes_floats and type(value) is float):
                     check(name, value)
+                    of_numpy |= isinstance(value, np.number)
         try:
+            if of_numpy:
+                # Eight bits hold no limit that such a number is compared with.
+                return function(*map(_plain, args), **{name: _plain(value) for name, value in kwargs.items()})  # type: ignore[arg-type]
             return function(*args, **kwargs)
         except _core.PanicException as e:
             raise InternalError(f"{function.__module__}.{function.__name__}", e) from e
 
     return checking
+
+
+def _plain(value: object) -> object:
+    """A number of NumPy as one of Python."""
+    return value.item() if isinstance(value, np.number) else value
 
 
 def _takes_floats(check: Check) -> bool:
@@ -219,6 +229,12 @@ def _integer(name: str, value: Any) -> None:
         raise InputError(name, shown(value), domain="a whole number of at most 63 bits")
 
 
+def _row_of_whole_numbers(name: str, value: Any) -> None:
+    _whole_numbers(name, value)
+    if np.ndim(value) != 1:
+        raise InputError(name, shown(value), domain="whole numbers in a row")
+
+
 def _whole_numbers(name: str, value: Any) -> None:
     array = numbers(name, value, expected="whole numbers")
     if array.size and (array.dtype.kind not in "biu" or int(array.max()) not in _INTEGERS):
@@ -269,8 +285,8 @@ _NAMED: dict[str, Check] = {
 _OF_NUMBERS: dict[tuple[str, str], Check] = {
     ("NDArray", "np.int64"): _whole_numbers,
     ("NDArray", "np.float64"): numbers,
-    ("Sequence", "int"): _whole_numbers,
-    ("Sequence", "float"): numbers,
+    ("Sequence", "int"): _row_of_whole_numbers,
+    ("Sequence", "float"): _row_of_numbers,
     ("Mapping", "(str, ArrayLike)"): _mapping_of_numbers,
     ("Mapping", "(int, float)"): _mapping_of_numbers,
 }

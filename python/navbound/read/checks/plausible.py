@@ -236,8 +236,8 @@ class Checker:
                     "bound is of the time of the position, a truth of the time of the row."
                 )
         repeated, stale, jump, unsettled, late, ahead = (int(k) for k in n[1:])
-        found = (repeated, stale, jump + self._n_twice, unsettled, late, ahead)
-        return Plausibility(*found, self._n_fast, fastest, self._n_doubted, n_steps, largest, words)
+        counts = (repeated, stale, jump + self._n_twice, unsettled, late, ahead)
+        return Plausibility(*counts, self._n_fast, fastest, self._n_doubted, n_steps, largest, words)
 
 
 def _columns(epochs: pl.DataFrame) -> pl.DataFrame:
