@@ -93,6 +93,31 @@ fn crates_depend_one_way() {
     assert_eq!(members, known, "a crate without a place in the order");
 }
 
+/// What is beside the program `all.rs` in a folder of tests, as far as it can hold tests: files and folders of Rust.
+fn beside(folder: &Path) -> Vec<String> {
+    let paths = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
+    let rust = paths.filter(|p| p.is_dir() || p.extension().is_some_and(|e| e == "rs"));
+    rust.map(|p| p.file_stem().unwrap().to_str().unwrap().to_owned()).filter(|name| name != "all").collect()
+}
+
+#[test]
+fn every_file_of_tests_is_run() {
+    let mut run = 0;
+    for (name, _) in CRATES {
+        let folder = root().join("crates").join(name).join("tests");
+        if !folder.is_dir() {
+            continue;
+        }
+        let program = fs::read_to_string(folder.join("all.rs")).unwrap();
+        let named: Vec<_> = program.lines().filter_map(|l| l.strip_prefix("mod ")?.strip_suffix(';')).collect();
+        for file in beside(&folder) {
+            run += 1;
+            assert!(named.contains(&file.as_str()), "crates/{name}/tests/all.rs does not name {file}: its tests do not run");
+        }
+    }
+    assert!(run > 20, "only {run} files found: the search is broken");
+}
+
 #[test]
 fn the_search_sees_a_use_in_braces_and_ignores_comments() {
     assert_eq!(

@@ -1,8 +1,7 @@
 //! One epoch, one step: what is decided of an epoch, against numbers that are known without it.
 #![allow(clippy::unwrap_used, reason = "a helper of tests may stop at the first surprise, too")]
 
-mod common;
-
+use crate::common;
 use navbound_core::bound::Alerting;
 use navbound_core::frame::Covariance;
 use navbound_core::judge::{Judge, Sample, Settings};

@@ -1,8 +1,7 @@
 //! The judge of one aircraft as bytes: what is read goes on as what was written, and nothing else is read.
 #![allow(clippy::unwrap_used, reason = "a helper of tests may stop at the first surprise, too")]
 
-mod common;
-
+use crate::common;
 use navbound_core::frame::Covariance;
 use navbound_core::judge::{Judge, Sample, Settings};
 use navbound_core::quantity::encoding::{BadBytes, crc32c};

@@ -146,7 +146,7 @@ fn the_state_of_version_1_is_still_read() {
     assert_eq!((caution.peak.m(), caution.min_margin.m()), (1.4 * RNP_M, RNP_M - 1.4 * RNP_M));
 }
 
-/// `NAVBOUND_WRITE=1 cargo test -p navbound-core --test rnp_monitor_bytes write` writes the file of the version of today.
+/// `NAVBOUND_WRITE=1 cargo test -p navbound-core --test all write_the_state` writes the file of the version of today.
 #[test]
 fn write_the_state_of_today() {
     if std::env::var_os("NAVBOUND_WRITE").is_none() {

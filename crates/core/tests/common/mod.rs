@@ -1,4 +1,5 @@
 //! What several tests of the judge share.
+#![allow(clippy::unwrap_used, reason = "a helper of tests may stop at the first surprise, too")]
 
 use navbound_core::bound::Alerting;
 use navbound_core::judge::Settings;

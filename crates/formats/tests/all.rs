@@ -1,0 +1,5 @@
+//! Every file of this folder is a module of one program: a program of its own costs more to link than most files take to run.
+
+mod orbits;
+mod real;
+mod rtklib;
