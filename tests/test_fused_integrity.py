@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -22,10 +24,16 @@ NO_SATELLITES = {"kind": "interference", "start_s": 2000.0, "duration_s": 8000.0
 def flown(
     faults: list[dict[str, Any]], name: str = "beijing-shanghai", flights: int = 1, systems: tuple[str, ...] = ("gps", "galileo")
 ) -> Any:
+    return _flown(json.dumps(faults), name, flights, systems)
+
+
+@cache
+def _flown(faults: str, name: str, flights: int, systems: tuple[str, ...]) -> Any:
+    """Several tests look at one flight."""
     data = scenario.load(name).model_dump()
     data["sensors"]["rate_hz"] = RATE_HZ
     data["sensors"]["gnss"]["constellations"] = list(systems)
-    data["sensors"]["faults"] = faults
+    data["sensors"]["faults"] = json.loads(faults)
     return fly.material(Scenario.model_validate(data), flights=flights)
 
 

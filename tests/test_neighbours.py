@@ -26,7 +26,7 @@ def moved(tmp_path: Path, error_en_m: NDArray[np.float64], speed_mps: float = 50
     }
     path = table(tmp_path / "a.csv", N, sigma_m=sigma_m, added=place)
     whole = navbound.analyze(path).summary.verdict
-    assert whole == navbound.analyze(path, piece_rows=7).summary.verdict
+    assert whole == navbound.analyze(path, piece_rows=41).summary.verdict
     return whole
 
 
