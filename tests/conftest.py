@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,8 +27,14 @@ settings.register_profile("repeatable", derandomize=True)
 settings.load_profile("repeatable")
 
 
-LONG = ("site", "wheel", "large_tables", "live_browser", "cli", "report_browser", "predict_flight")
+LONG = ("site", "live_browser", "large_tables", "wheel", "report_browser", "predict_flight", "fused", "fused_integrity", "cli")
 """Files that take a minute and more, the longest first: one that begins last is waited for while the other cores rest."""
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers() -> int:
+    """One worker more than cores: browsers, servers and their clocks are waited for, and the core that would rest has another file."""
+    return (os.cpu_count() or 1) + 1
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
