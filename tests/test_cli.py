@@ -6,9 +6,17 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import polars as pl
 import pytest
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from conftest import Ended
+
+    Command = Callable[..., Ended]
 
 USAGE, UNREADABLE = 2, 3
 
@@ -20,7 +28,8 @@ TRACK = """time_ns,est_lat_rad,est_lon_rad,est_h_m,sigma_e_m,sigma_n_m
 """
 
 
-def navbound(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+def started(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    """In a process of its own."""
     return subprocess.run([sys.executable, "-m", "navbound", *map(str, arguments)], capture_output=True, text=True, check=False)
 
 
@@ -41,7 +50,7 @@ def track(tmp_path: Path) -> Path:
         (["analyze", "day.csv", "--mask", "90"], USAGE, "mask = 90.0 [deg]"),
         (["analyze", "day.csv", "--mask", "nan"], USAGE, "[0, 90)"),
         (["fly", "beijing-shanghai", "--flights", "many"], USAGE, "--flights"),
-        (["fly", "beijing-shanghai", "--methods", "tse-exakt"], USAGE, "tse-exact"),
+        (["fly", "barcelona-taxi", "--methods", "tse-exakt"], USAGE, "tse-exact"),
         (["fly", "--wrong"], USAGE, "--wrong"),
         (["analyze"], USAGE, "Missing argument"),
         (["analyze", "missing.csv"], UNREADABLE, "missing.csv"),
@@ -54,9 +63,9 @@ def track(tmp_path: Path) -> Path:
         (["nothing"], USAGE, "nothing"),
     ],
 )
-def test_a_wrong_call_is_a_sentence(arguments: list[str], status: int, named: str, tmp_path: Path) -> None:
+def test_a_wrong_call_is_a_sentence(arguments: list[str], status: int, named: str, tmp_path: Path, navbound: Command) -> None:
     done = navbound(*arguments, *(["--out", str(tmp_path / "run")] if arguments[0] == "fly" else []))
-    assert done.returncode == status, done.stderr
+    assert done.status == status, done.stderr
     assert named in done.stderr
     assert "Traceback" not in done.stderr
     assert "bug" not in done.stderr
@@ -73,9 +82,9 @@ def test_a_wrong_call_is_a_sentence(arguments: list[str], status: int, named: st
         (["--map", "latitude"], "canonical=column"),
     ],
 )
-def test_a_wrong_option_names_what_is_allowed(option: list[str], named: str, track: Path, tmp_path: Path) -> None:
+def test_a_wrong_option_names_what_is_allowed(option: list[str], named: str, track: Path, tmp_path: Path, navbound: Command) -> None:
     done = navbound("analyze", track, *option, "--out", tmp_path / "run")
-    assert done.returncode == USAGE, done.stderr
+    assert done.status == USAGE, done.stderr
     assert named in done.stderr
 
 
@@ -88,44 +97,52 @@ def test_a_wrong_option_names_what_is_allowed(option: list[str], named: str, tra
         (b"latitude,longitude,timestamp\n91.5,2,2021-10-07T12:00:00\n", "91.5"),
     ],
 )
-def test_unreadable_data_say_where(content: bytes, named: str, tmp_path: Path) -> None:
+def test_unreadable_data_say_where(content: bytes, named: str, tmp_path: Path, navbound: Command) -> None:
     path = tmp_path / "bad.csv"
     path.write_bytes(content)
     done = navbound("analyze", path, "--out", tmp_path / "run")
-    assert done.returncode == UNREADABLE, done.stderr
+    assert done.status == UNREADABLE, done.stderr
     assert named in done.stderr
     assert "bad.csv" in done.stderr
+
+
+def test_what_is_refused_in_a_process_of_its_own_is_the_same_sentence(tmp_path: Path, navbound: Command) -> None:
+    """The other refusals are seen in the process of the test."""
+    for arguments, status in ((["fly", "nowhere", "--out", str(tmp_path / "run")], USAGE), (["analyze", "missing.csv"], UNREADABLE)):
+        alone, here = started(*arguments), navbound(*arguments)
+        assert alone.returncode == here.status == status
+        assert (alone.stdout, alone.stderr) == (here.stdout, here.stderr)
 
 
 def test_a_column_can_be_named(track: Path, tmp_path: Path) -> None:
     renamed = track.with_name("renamed.csv")
     renamed.write_text(TRACK.replace("est_lat_rad", "phi"), encoding="utf-8")
-    done = navbound("analyze", renamed, "--map", "est_lat_rad=phi:rad", "--out", tmp_path / "run", "--json")
+    done = started("analyze", renamed, "--map", "est_lat_rad=phi:rad", "--out", tmp_path / "run", "--json")
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["verdict"]["n_judged"] == 4
 
 
 def test_a_run_can_be_shown_again(track: Path, tmp_path: Path) -> None:
-    first = navbound("analyze", track, "--out", tmp_path / "run", "--json")
-    again = navbound("show", tmp_path / "run", "--json")
+    first = started("analyze", track, "--out", tmp_path / "run", "--json")
+    again = started("show", tmp_path / "run", "--json")
     assert first.returncode == again.returncode == 0, first.stderr
     assert json.loads(first.stdout) == json.loads(again.stdout)
     assert "later job" not in again.stderr
     (tmp_path / "run" / "summary.json.partial").write_text("{", encoding="utf-8")
-    killed = navbound("show", tmp_path / "run", "--json")
+    killed = started("show", tmp_path / "run", "--json")
     assert json.loads(killed.stdout) == json.loads(first.stdout)
     assert "a later job began here and has not finished (summary.json.partial); this is the run before it." in killed.stderr
 
 
 def test_a_directory_with_other_files_is_left_alone(track: Path, tmp_path: Path) -> None:
     (tmp_path / "letter.txt").write_text("dear")
-    done = navbound("analyze", track, "--out", tmp_path)
+    done = started("analyze", track, "--out", tmp_path)
     assert done.returncode == UNREADABLE
     assert "letter.txt" in done.stderr
 
 
-def test_verify_prints_every_vector_file(flown) -> None:  # type: ignore[no-untyped-def]
-    done = navbound("verify", "--json")
+def test_verify_prints_every_vector_file() -> None:
+    done = started("verify", "--json")
     assert done.returncode == 0, done.stderr
     rows = json.loads(done.stdout)
     assert sum(row["n_cases"] for row in rows) > 1000
