@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
+import re
 import shutil
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+from sphinxcontrib.programoutput import Command
 
 from navbound import __version__
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
 
 ROOT = Path(__file__).parents[1]
 WORK = ROOT / "out" / "site-work"
@@ -64,3 +74,25 @@ os.environ.update(COLUMNS="92", NO_COLOR="1", TERM="dumb")
 shutil.rmtree(WORK, ignore_errors=True)
 for page in ("first-ten-minutes", "pbn-engineer", "gnss-analyst", "doctoral-student"):
     (WORK / page).mkdir(parents=True)
+
+
+def printed_help(words: str) -> str:
+    """What a command says of itself, as to a file; a command that is none raises."""
+    from navbound.cli.main import app  # noqa: PLC0415 - consoles take their width from COLUMNS when it is loaded
+
+    name, *arguments = words.split()
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        typer.main.get_command(app).main(arguments, prog_name=name, standalone_mode=False)
+    return printed.getvalue().rstrip()
+
+
+def print_all_help(app: Sphinx) -> None:
+    """The page of commands has some forty outputs of `--help`: they are printed here, for starting Python so often takes half a minute."""
+    for words in re.findall(r"^```{program-output} (navbound.*--help)$", (ROOT / "docs/reference/commands.md").read_text(), re.MULTILINE):
+        app.env.programoutput_cache[Command(words, working_directory=app.srcdir)] = (0, printed_help(words))
+
+
+def setup(app: Sphinx) -> None:
+    """Called by Sphinx; the extension has its store of outputs from the same event."""
+    app.connect("builder-inited", print_all_help, priority=900)
