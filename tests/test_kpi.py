@@ -179,7 +179,7 @@ def test_any_cut_into_tables_gives_the_same_record() -> None:
     expected = comparable(kpi.evaluate(whole, "NPA,APV-I,LPV-200", period_s=1.0))
     assert expected["n_events"]["loss"] > 100
     rng = np.random.default_rng(8)
-    for n_cuts in (1, 7, 300):
+    for n_cuts in (1, 7, 100):
         cuts = [0, *sorted(rng.choice(np.arange(1, whole.height), n_cuts, replace=False).tolist()), whole.height]
         parts = [whole[a:b] for a, b in pairwise(cuts)]
         assert comparable(kpi.evaluate(parts, "NPA,APV-I,LPV-200", period_s=1.0)) == expected
