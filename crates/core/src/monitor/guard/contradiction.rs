@@ -66,6 +66,8 @@ pub struct Contradiction {
     starts: [Option<GpsTime>; STARTS_MOST],
     started: Option<GpsTime>,
     out: bool,
+    /// The filter has estimated biases that its unit does not have: since when, until the unit is found to be the cause and that is over.
+    biased: Option<GpsTime>,
     /// A contradiction of which the unit was the cause has been cleared, and nobody has read it since.
     cleared: bool,
 }
@@ -89,6 +91,9 @@ impl Contradiction {
         let agreed = now.seconds_since(failed) >= if brief { AGREED_AFTER_BRIEF_S } else { AGREED_S };
         if self.raised.is_some() && agreed && settled && !self.out {
             self.cleared = self.unit;
+            if self.unit && !self.before {
+                self.biased = None;
+            }
             // A cause that has gone leaves nothing open.
             self.open |= !brief && (!self.unit || self.before);
             (self.raised, self.unit, self.still, self.jumped) = (None, false, false, false);
@@ -116,7 +121,8 @@ impl Contradiction {
     /// The unit has failed in whatever way: what was unexplained before stays so.
     pub fn note_fault(&mut self, now: GpsTime) {
         let unexplained = !self.unit && self.raised.is_some_and(|t| now.seconds_since(t) >= BEFORE_S);
-        self.before |= self.open || unexplained || self.jumped;
+        let biased = !self.unit && self.biased.is_some_and(|t| now.seconds_since(t) >= BEFORE_S);
+        self.before |= self.open || unexplained || self.jumped || biased;
     }
 
     /// The positions have left the way that their own rates lead. Where nothing contradicts them that stays open; where something does it is the
@@ -127,6 +133,18 @@ impl Contradiction {
         } else {
             self.leave_open();
         }
+    }
+
+    /// The biases that the filter has estimated are none that the declared unit has: either that unit is another, or the positions have led the
+    /// filter where it had to take its unit for another. A bias that is usual again later takes back nothing: it fades, and what it has
+    /// explained stays in the positions.
+    pub fn leave_biases(&mut self, now: GpsTime) {
+        self.biased.get_or_insert(now);
+    }
+
+    /// Whether they have been, and nothing has shown since that the unit was the cause.
+    pub const fn is_biased(&self) -> bool {
+        self.biased.is_some()
     }
 
     /// A witness has spoken against satellites that stood alone: a unit that comes back learns from them and explains nothing.

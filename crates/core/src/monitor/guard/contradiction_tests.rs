@@ -238,3 +238,20 @@ fn stations_convict_a_unit_in_a_contradiction_that_moved() {
     };
     assert!(after(100.0) && after(21.0) && !after(20.0));
 }
+
+/// A unit that fails within ten seconds explains them, and they end with its fault; one that fails later explains nothing.
+#[test]
+fn biases_stay_until_a_unit_that_failed_with_them_is_right_again() {
+    for (failed_s, explained) in [(9.0, true), (10.0, false)] {
+        let mut c = Contradiction::default();
+        assert!(!c.is_biased());
+        c.leave_biases(at(0.0));
+        // The time is that of the first.
+        c.leave_biases(at(8.0));
+        c.convict(at(failed_s));
+        assert!(c.is_biased() && c.was_before_the_unit() != explained, "{failed_s}");
+        (11..60).for_each(|s| c.judge(at(f64::from(s)), &position(1.0, 1.0), true, true));
+        assert!(!c.is_raised());
+        assert_eq!((c.is_biased(), c.is_open()), (!explained, !explained), "{failed_s}");
+    }
+}

@@ -32,6 +32,7 @@ impl Guard {
         if !is_sane(&timed.aiding) {
             return true;
         }
+        self.hear_biases(filter, timed.time);
         let before = self.looked.take();
         let mut looked = seen(timed.time, m, before.as_ref(), age_sigma_s);
         let mut usable = true;

@@ -4,6 +4,7 @@
 //! In the order of an instant: [`Guard::sample`] with every inertial sample, [`Guard::admit`] with the ranges before the filter has them,
 //! [`Guard::restart`] where one is due, [`Guard::facts`] at an epoch. Provenance: ours; methods in docs/methods/fused-integrity.md.
 
+mod biases;
 mod contradiction;
 mod course;
 mod fixes;
@@ -29,7 +30,7 @@ pub use shares::Shares;
 pub use stations::{AGREE, Reading, Stations, testimony};
 
 use super::consistency::normalised_square_horizontal;
-use super::judgement::{Agreement, Facts, FilterFacts, Inertial, RangesAgree, SnapshotFacts, Testimony, Witnesses};
+use super::judgement::{Agreement, Biases, Facts, FilterFacts, Inertial, RangesAgree, SnapshotFacts, Testimony, Witnesses};
 use crate::bound::raim;
 use crate::frame::{Covariance, Displacement, Enu};
 use crate::quantity::{GpsTime, OutOfDomain};
@@ -67,6 +68,8 @@ pub struct Guard {
     raim: raim::Monitor,
     rates: raim::Monitor,
     limit: [f64; 4],
+    /// Square of an estimated bias up to which it is one of the declared unit.
+    bias_limit: f64,
     /// Squares up to which both are said to be back together.
     usual: [f64; 4],
     plausibility: Plausibility,
@@ -114,6 +117,7 @@ impl Guard {
             rates: raim.clone(),
             raim,
             limit: limits(TEST_RISK),
+            bias_limit: chi_square_factor(1.0, biases::RISK),
             usual: limits(AGREE),
             plausibility: Plausibility::new(settings.envelope),
             contradiction: Contradiction::default(),
@@ -187,6 +191,7 @@ impl Guard {
         let age_s = now.seconds_since(time);
         let in_time = age_s <= self.settings.age_most_s && age_s >= -0.5;
         self.late = if in_time { 0 } else { self.late + 1 };
+        self.hear_biases(filter, time);
         let mut ranges = self.fresh(&judgeable(together));
         let before = self.looked.take();
         let (mut looked, excluded) = match self.look(time, &mut ranges) {
@@ -335,6 +340,7 @@ impl Guard {
             satellite_times_hold: Some(self.late < LATE_MOST && !filter.fixes_are_late()),
             gating: Some(gating),
             tuning: Some(self.shares.tuning()),
+            biases: Some(if self.contradiction.is_biased() { Biases::Beyond } else { Biases::AsDeclared }),
             witnesses: Some(Witnesses { stations: self.testimony[0], altimeter: self.testimony[1], ..witnesses }),
         }
     }

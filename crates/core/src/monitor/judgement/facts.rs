@@ -156,6 +156,15 @@ pub enum Tuning {
     Foreign,
 }
 
+/// The biases of the inertial unit that the filter has estimated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Biases {
+    /// As the declared unit has them.
+    AsDeclared,
+    /// They have been beyond those of the declared unit: it is another unit, or the positions have led the filter. Time does not tell which.
+    Beyond,
+}
+
 /// Witnesses that share no satellite with the filter. `None` inside: that witness does not exist on board.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Witnesses {
@@ -196,6 +205,8 @@ pub struct Facts {
     pub gating: Option<Gating>,
     /// The filter's innovations.
     pub tuning: Option<Tuning>,
+    /// The estimated biases of the unit.
+    pub biases: Option<Biases>,
     /// The others on board.
     pub witnesses: Option<Witnesses>,
 }
@@ -213,6 +224,7 @@ impl Facts {
             satellite_times_hold: None,
             gating: None,
             tuning: None,
+            biases: None,
             witnesses: None,
         }
     }

@@ -8,7 +8,9 @@ mod reason;
 #[cfg(test)]
 mod tests;
 
-pub use facts::{Agreement, CarriedFacts, Facts, FilterFacts, Gating, Inertial, RangesAgree, SnapshotFacts, Testimony, Tuning, Witnesses};
+pub use facts::{
+    Agreement, Biases, CarriedFacts, Facts, FilterFacts, Gating, Inertial, RangesAgree, SnapshotFacts, Testimony, Tuning, Witnesses,
+};
 pub use reason::{Reason, Reasons};
 
 use crate::quantity::GpsTime;
@@ -79,10 +81,11 @@ pub struct Decision {
 impl Decision {
     /// The reason to name first: the one that weighs most, causes before their consequences.
     pub fn leading(&self) -> Option<Reason> {
-        const ORDER: [Reason; 22] = [
+        const ORDER: [Reason; 23] = [
             Reason::ImuFault,
             Reason::ImuImplausible,
             Reason::FilterContradicted,
+            Reason::ImuBias,
             Reason::FiltersDisagree,
             Reason::StationsContradict,
             Reason::AltimeterContradicts,
@@ -157,6 +160,8 @@ pub fn decide(facts: &Facts) -> Decision {
     // No level of a position that a witness contradicts.
     let witnessed = !questioned || lets_the_snapshot_stand(facts);
     let level = level.filter(|_| source != Source::None && witnessed);
+    // The positions that led a filter to biases that its unit does not have are those whose level this is.
+    let level = level.filter(|_| !led_astray(facts, source));
     let vertical = level.filter(|_| !reasons.has(Reason::AltimeterContradicts));
     let bounded = if is_disputed(facts) { vertical } else { level };
     let status = status(facts, source, reasons, bounded.is_some());
@@ -196,6 +201,7 @@ fn common(facts: &Facts) -> Reasons {
         None => reasons.with(Reason::FactMissing),
         Some(hold) => reasons.with_if(!hold, Reason::GnssTime),
     };
+    reasons = reasons.with_if(facts.biases == Some(Biases::Beyond), Reason::ImuBias);
     match facts.witnesses {
         None => reasons.with(Reason::FactMissing),
         Some(w) => reasons
@@ -224,6 +230,7 @@ fn of_the_filter(reasons: Reasons, facts: &Facts, filter: &FilterFacts) -> Reaso
         Some(Gating::Usual) => reasons,
         Some(Gating::Excess { .. }) => reasons.with(Reason::GatingExcess),
     };
+    reasons = reasons.with_if(facts.biases.is_none(), Reason::FactMissing);
     match facts.tuning {
         None => reasons.with(Reason::FactMissing),
         Some(Tuning::AsDeclared) => reasons,
@@ -287,6 +294,11 @@ fn unit_is_the_cause(facts: &Facts) -> bool {
     matches!(facts.inertial, Some(Inertial::Fault | Inertial::Implausible))
 }
 
+/// The filter has found biases that its unit does not have, and the position that is given is not one that a wrong unit explains.
+fn led_astray(facts: &Facts, source: Source) -> bool {
+    facts.biases == Some(Biases::Beyond) && !(source == Source::Snapshot && unit_is_the_cause(facts))
+}
+
 fn status(facts: &Facts, source: Source, reasons: Reasons, with_level: bool) -> Status {
     // A unit that is known to be wrong explains why filters and stations fall out: all of these rest on it.
     let explained = source == Source::Snapshot && unit_is_the_cause(facts);
@@ -304,7 +316,7 @@ fn status(facts: &Facts, source: Source, reasons: Reasons, with_level: bool) -> 
     }
     let rejects = matches!(facts.gating, Some(Gating::Excess { for_s }) if !(for_s < EXCESS_MOST_S));
     let unchecked = reasons.has(Reason::SnapshotMissing);
-    let foreign = reasons.has(Reason::TuningForeign) && unchecked;
+    let foreign = reasons.any(&[Reason::TuningForeign, Reason::ImuBias]) && unchecked;
     if rejects || foreign || reasons.any(&[Reason::FilterContradicted, Reason::ImuMissing, Reason::ImuRefused]) {
         return Status::NotAvailable;
     }
@@ -314,7 +326,7 @@ fn status(facts: &Facts, source: Source, reasons: Reasons, with_level: bool) -> 
 /// Reasons that say something of the filter and nothing of the snapshot, once the unit is known to be out.
 ///
 /// Filters and stations that fall out are among them: where the unit is not the cause the epoch is not available before this is examined.
-const OF_THE_FILTER_ALONE: [Reason; 8] = [
+const OF_THE_FILTER_ALONE: [Reason; 9] = [
     Reason::StateStale,
     Reason::ImuMissing,
     Reason::ImuRefused,
@@ -323,6 +335,7 @@ const OF_THE_FILTER_ALONE: [Reason; 8] = [
     Reason::FilterContradicted,
     Reason::FiltersDisagree,
     Reason::StationsContradict,
+    Reason::ImuBias,
 ];
 
 /// Without the inertial unit the snapshot is as good as its own test, once the unit is known to be the cause.
@@ -332,6 +345,8 @@ fn of_the_snapshot(facts: &Facts, reasons: Reasons, with_level: bool) -> Status 
         _ => false,
     };
     let known = !is_disputed(facts) && (unit_is_the_cause(facts) || absent);
-    let others = reasons.iter().any(|r| !OF_THE_FILTER_ALONE.contains(&r));
+    // Biases are among them where the unit is the cause, which `known` asks for and an absent unit does not show.
+    let led = led_astray(facts, Source::Snapshot);
+    let others = led || reasons.iter().any(|r| !OF_THE_FILTER_ALONE.contains(&r));
     if known && !others && with_level { Status::Ok } else { Status::Degraded }
 }

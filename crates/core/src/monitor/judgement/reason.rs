@@ -50,11 +50,13 @@ pub enum Reason {
     FactMissing,
     /// The altimeter contradicts the height of the snapshot.
     AltimeterContradicts,
+    /// The filter has estimated biases of its unit that the unit as declared does not have.
+    ImuBias,
 }
 
 impl Reason {
     /// Every reason, in the order of its number.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::StateStale,
         Self::ImuMissing,
         Self::ImuRefused,
@@ -77,6 +79,7 @@ impl Reason {
         Self::Aligning,
         Self::FactMissing,
         Self::AltimeterContradicts,
+        Self::ImuBias,
     ];
 
     /// Its entry in the list of reasons. The status of that entry is the one that it gives alone and for long; [`super::decide`] decides.
@@ -104,6 +107,7 @@ impl Reason {
             Self::Aligning => Entry::Aligning,
             Self::FactMissing => Entry::FactMissing,
             Self::AltimeterContradicts => Entry::AltimeterContradicts,
+            Self::ImuBias => Entry::ImuBias,
         }
     }
 

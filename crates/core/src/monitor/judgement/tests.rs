@@ -24,6 +24,7 @@ fn good() -> Facts {
         satellite_times_hold: Some(true),
         gating: Some(Gating::Usual),
         tuning: Some(Tuning::AsDeclared),
+        biases: Some(Biases::AsDeclared),
         witnesses: Some(Witnesses { filters_disagree: Some(false), stations_contradict: Some(false), ..Witnesses::NONE }),
     }
 }
@@ -34,7 +35,7 @@ fn by_snapshot() -> Facts {
 }
 
 /// Each way to take one fact away.
-const WITHOUT: [fn(&mut Facts); 8] = [
+const WITHOUT: [fn(&mut Facts); 9] = [
     |f| f.filter = None,
     |f| f.snapshot = None,
     |f| f.agreement = None,
@@ -43,6 +44,7 @@ const WITHOUT: [fn(&mut Facts); 8] = [
     |f| f.gating = None,
     |f| f.tuning = None,
     |f| f.witnesses = None,
+    |f| f.biases = None,
 ];
 
 #[test]
@@ -128,6 +130,27 @@ fn filters_that_fall_out_are_explained_by_a_unit_that_is_wrong_and_by_nothing_el
     assert_eq!(decide(&Facts { witnesses, ..by_snapshot() }).status, Status::Ok);
     let missing = Some(Inertial::Missing { for_s: 20.0 });
     assert_eq!(decide(&Facts { witnesses, inertial: missing, ..good() }).status, Status::NotAvailable);
+}
+
+/// The level is that of the positions that have led the filter there.
+#[test]
+fn biases_that_the_unit_does_not_have_leave_no_level_until_the_unit_is_the_cause() {
+    let biases = Some(Biases::Beyond);
+    let decision = decide(&Facts { biases, ..good() });
+    assert_eq!((decision.status, decision.source, decision.leading()), (Status::Degraded, Source::Filter, Some(Reason::ImuBias)));
+    assert_eq!((decision.hpl_m, decision.vpl_m), (None, None));
+    // Nothing checks it any more.
+    let carried = Some(CarriedFacts { age_s: 5.0, level_m: [14.0, 20.0] });
+    assert_eq!(decide(&Facts { biases, snapshot: None, carried, ..good() }).status, Status::NotAvailable);
+    // A unit that has gone explains nothing, one that is wrong explains its biases.
+    for (inertial, status, hpl_m) in [
+        (Inertial::Missing { for_s: 20.0 }, Status::Degraded, None),
+        (Inertial::Fault, Status::Ok, Some(10.0)),
+        (Inertial::Implausible, Status::Ok, Some(10.0)),
+    ] {
+        let decision = decide(&Facts { biases, inertial: Some(inertial), ..good() });
+        assert_eq!((decision.status, decision.source, decision.hpl_m), (status, Source::Snapshot, hpl_m), "{inertial:?}");
+    }
 }
 
 #[test]
@@ -257,12 +280,13 @@ prop_compose! {
         satellite_times_hold in maybe(proptest::bool::weighted(0.8)),
         gating in maybe(prop_oneof![2 => Just(Gating::Usual), 1 => number().prop_map(|for_s| Gating::Excess { for_s })]),
         tuning in maybe(prop_oneof![3 => Just(Tuning::AsDeclared), 1 => Just(Tuning::Foreign)]),
+        biases in maybe(prop_oneof![3 => Just(Biases::AsDeclared), 1 => Just(Biases::Beyond)]),
         witnesses in maybe((maybe(proptest::bool::weighted(0.2)), maybe(proptest::bool::weighted(0.2)), testimony(), testimony()).prop_map(
             |(filters_disagree, stations_contradict, stations, altimeter)| {
                 Witnesses { filters_disagree, stations_contradict, stations, altimeter }
             })),
     ) -> Facts {
-        Facts { epoch: epoch(), filter, snapshot, carried, agreement, inertial, satellite_times_hold, gating, tuning, witnesses }
+        Facts { epoch: epoch(), filter, snapshot, carried, agreement, inertial, satellite_times_hold, gating, tuning, biases, witnesses }
     }
 }
 

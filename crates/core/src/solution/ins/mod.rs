@@ -13,6 +13,7 @@ mod after_gap;
 mod against;
 mod aid;
 mod align;
+mod biases;
 mod covariance;
 #[cfg(test)]
 mod covariance_tests;
@@ -41,6 +42,7 @@ pub use after_gap::Resumption;
 pub use against::{Difference, is_sane, judgeable};
 pub use aid::{Aided, Wheels};
 pub use align::{COURSE_FROM_MPS, coarse};
+pub use biases::BiasEstimate;
 pub use entry::Refusal;
 pub use filter::{Advance, Filter, STATE_AGE_MOST_S, Samples, Solution, Stop};
 pub use fusion::{Beside, Fusion};
