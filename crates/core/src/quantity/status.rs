@@ -198,9 +198,6 @@ reasons! {
     /// Of a filtered position.
     ImuFault, "imu_fault", Degraded, "the inertial unit is wrong: the ranges of the instant alone give the position";
     /// Of a filtered position.
-    ImuBias, "imu_bias", Degraded,
-        "the filter has found biases that its unit does not have as declared: the unit or the positions are wrong";
-    /// Of a filtered position.
     GnssTime, "gnss_time", Degraded, "the times of the satellite measurements are out of their latency";
     /// Of a filtered position.
     SnapshotMissing, "snapshot_missing", Degraded, "no snapshot of the ranges checks the filter";
@@ -267,6 +264,9 @@ reasons! {
     /// Of a surveillance report.
     ForeignPosition, "foreign_position", NotAvailable,
         "the position is not the aircraft's own: others measured or repeated it, and it carries no claim";
+    /// Of a filtered position.
+    ImuBias, "imu_bias", Degraded,
+        "the filter has found biases that its unit does not have as declared: the unit or the positions are wrong";
 }
 
 impl Reason {
