@@ -14,6 +14,7 @@ import polars as pl
 import pytest
 
 from navbound import InputError, path, scenario
+from navbound.errors import NotFoundError
 from navbound.records.material import Material
 from navbound.run.fly import material
 from navbound.run.judge import judge
@@ -175,3 +176,8 @@ def test_no_flight_is_refused(flights: int) -> None:
 def test_a_seed_outside_its_range_is_refused(seed: int) -> None:
     with pytest.raises(InputError, match="seed"):
         material(DRAWN, seed=seed)
+
+
+def test_a_method_that_does_not_exist_is_refused_before_a_flight_is_flown() -> None:
+    with pytest.raises(NotFoundError, match="tse-exakt"):
+        Settings(methods=("tse-exact", "tse-exakt"))

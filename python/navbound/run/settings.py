@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from navbound.methods import method
 from navbound.risks import checked_risk
 
 DEFAULT_METHODS = (
@@ -30,12 +31,14 @@ class Settings:
     risk_integrity: float = 1e-5
 
     def __post_init__(self) -> None:
-        """Refuse what is no risk, before anything is worked out.
+        """Refuse what is no method and what is no risk, before anything is worked out.
 
         Raises
         ------
         InputError
-            A risk outside its domain.
+            A method that does not exist, or a risk outside its domain.
         """
+        for each in self.methods:
+            method(each)
         checked_risk("risk_accuracy", self.risk_accuracy)
         checked_risk("risk_integrity", self.risk_integrity)
