@@ -11,6 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 import navbound
+from navbound import InputError
 from navbound.records.run import Verdict
 from test_verdict import M_PER_RAD, START_NS, first_sentence, table, white
 
@@ -97,3 +98,10 @@ def test_a_truth_that_freezes_under_way_is_none_from_there_on(tmp_path: Path) ->
     verdict = navbound.analyze(table(tmp_path / "a.csv", N, error_en_m=white(N), added=truth)).summary.verdict
     assert (verdict.id, verdict.n_truth, verdict.n_truth_doubted) == ("inside", 340, 60)
     assert "it stands still while the positions travel" in verdict.words
+
+
+def test_a_truth_without_a_character_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("time,lat_deg,lon_deg\n2026-11-22T12:00:00Z,49.0,2.5\n")
+    with pytest.raises(InputError, match="truth"):
+        navbound.analyze(path, truth="", sigma_m=3.0)

@@ -282,7 +282,7 @@ def test_a_callsign_is_one_in_any_writing(tmp_path: Path) -> None:
     ],
 )
 def test_an_age_that_is_not_understood_is_named(tmp_path: Path, added: dict[str, Any], named: str) -> None:
-    assert named in analyzed(tmp_path, rows(**added)).summary.verdict.unread
+    assert named in analyzed(tmp_path, [row | added for row in rows()]).summary.verdict.unread
 
 
 def test_a_time_and_a_position_cannot_be_left_out(tmp_path: Path) -> None:
@@ -290,3 +290,35 @@ def test_a_time_and_a_position_cannot_be_left_out(tmp_path: Path) -> None:
     for quantity in ("time", "est_lat_rad"):
         with pytest.raises(FormatError):
             navbound.analyze(tmp_path / "a.json", columns={quantity: "-"})
+
+
+@pytest.mark.parametrize("where", ["row", "details"])
+@pytest.mark.parametrize("kind", ["mlat", "tisb_icao", "adsr_icao", "mode_s", "adsc", "adsb_icao"])
+def test_a_position_of_a_readsb_trace_that_others_computed_is_reported(tmp_path: Path, kind: str, where: str) -> None:
+    source = kind if where == "row" else None
+    rows = []
+    for k in range(N):
+        details = {"nac_p": 10, "nic": 8, "type": kind} if k == 0 else None
+        rows.append([k, 48.0 + k * SPEED_MPS * DEG_PER_M, 2.0, 30_000, SPEED_MPS / 0.514444, 0.0, 0, 0, details, source, 30_500])
+    path = tmp_path / "trace.json"
+    path.write_text(json.dumps({"icao": "3c6444", "timestamp": 1_700_000_000, "trace": rows}), encoding="utf-8")
+    run = navbound.analyze(path)
+    expected = (set[str | None]({None}), "inside") if kind == "adsb_icao" else (set[str | None]({"reported"}), "nothing_judged")
+    assert (reasons(run), run.summary.verdict.id) == expected
+
+
+@pytest.mark.parametrize(("one", "other", "verdict"), [(10, 2, "outside"), (2, 10, "outside"), (10, 9, "inside")])
+def test_of_two_accuracy_categories_the_smaller_counts(tmp_path: Path, one: int, other: int, verdict: str) -> None:
+    """NACp 2 is 4 NM, beyond RNP 0.3."""
+    run = analyzed(tmp_path, rows(nac_p=one, NACp=other))
+    assert run.summary.verdict.id == verdict
+    assert run.summary.verdict.unread == []
+
+
+@pytest.mark.parametrize(("other_mps", "doubted"), [(250.0, False), (260.0, False), (340.0, True), (0.0, True)])
+@pytest.mark.parametrize("name", ["groundspeed_mps", "velocity"])
+def test_two_speeds_that_contradict_each_other_show_nothing(tmp_path: Path, name: str, other_mps: float, doubted: bool) -> None:
+    """The larger would hide positions that are led ahead, the smaller those that stand."""
+    added = {"vel_n_mps": other_mps, "vel_e_mps": 0.0} if name == "velocity" else {name: other_mps}
+    verdict = analyzed(tmp_path, [row | added for row in rows()]).summary.verdict
+    assert (verdict.id, bool(verdict.position_doubts)) == (("not_shown", True) if doubted else ("inside", False))

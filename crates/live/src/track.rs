@@ -202,13 +202,13 @@ fn read_mark(from: &mut Reader<'_>) -> Result<Mark, Damaged> {
 fn reached(to: &mut Writer, reached: Reached) {
     to.i64(reached.time.nanoseconds());
     reached.place.vector().iter().for_each(|number| to.f64(*number));
-    to.f64(reached.reported_m);
+    [reached.reported_m, reached.fastest_mps].into_iter().for_each(|number| to.f64(number));
 }
 
 fn read_reached(from: &mut Reader<'_>) -> Result<Reached, Damaged> {
     let time = GpsTime::from_nanoseconds(from.i64()?);
     let place = EcefPosition::from_vector([from.f64()?, from.f64()?, from.f64()?].into());
-    Ok(Reached { time, place, reported_m: from.f64()? })
+    Ok(Reached { time, place, reported_m: from.f64()?, fastest_mps: from.f64()? })
 }
 
 fn height(to: &mut Writer, height: Height) {

@@ -236,18 +236,20 @@ impl Navigation {
         let model = if system == 'C' { self.records.klobuchar_beidou } else { self.records.klobuchar_gps };
         model.map(|k: Klobuchar| (k.alpha, k.beta))
     }
-    /// Kepler orbits of a constellation at an instant, from each healthy satellite's nearest record: names, seven elements a row, ages [s].
-    fn orbits<'py>(&self, py: Python<'py>, system: usize, time_ns: i64) -> PyResult<Kepler<'py>> {
+    /// Kepler orbits of a constellation at an instant, from each satellite's nearest record: names, seven elements a row, ages [s]. One whose
+    /// nearest record says that it is unhealthy is left out, unless those are requested too.
+    fn orbits<'py>(&self, py: Python<'py>, system: usize, time_ns: i64, unhealthy: bool) -> PyResult<Kepler<'py>> {
         let time = GpsTime::from_nanoseconds(time_ns);
         let age = |e: &Ephemeris| time.seconds_since(e.orbit_time);
         let mut nearest: BTreeMap<String, &Ephemeris> = BTreeMap::new();
-        let of_system = |e: &&Ephemeris| e.satellite.constellation.index() == system && e.healthy(Carrier::L1);
+        let of_system = |e: &&Ephemeris| e.satellite.constellation.index() == system;
         for e in self.records.ephemerides.iter().filter(of_system) {
             let slot = nearest.entry(e.satellite.to_string()).or_insert(e);
             if age(e).abs() < age(slot).abs() {
                 *slot = e;
             }
         }
+        nearest.retain(|_, e| unhealthy || e.healthy(Carrier::L1));
         let (mut rows, mut ages) = (Vec::with_capacity(7 * nearest.len()), Vec::with_capacity(nearest.len()));
         for e in nearest.values() {
             let el = mean_elements(e).moved(age(e)).map_err(|e| input_error(e, None))?;
@@ -268,6 +270,7 @@ impl Navigation {
         d.set_item("clock_time_ns", e.iter().map(|e| e.clock_time.nanoseconds()).collect::<Vec<_>>().into_pyarray(py))?;
         d.set_item("issue", e.iter().map(|e| i64::from(e.issue_orbit)).collect::<Vec<_>>().into_pyarray(py))?;
         d.set_item("health", e.iter().map(|e| i64::from(e.health.word)).collect::<Vec<_>>().into_pyarray(py))?;
+        d.set_item("is_healthy", e.iter().map(|e| e.healthy(Carrier::L1)).collect::<Vec<_>>().into_pyarray(py))?;
         for (name, value) in ELEMENTS {
             d.set_item(name, e.iter().map(value).collect::<Vec<_>>().into_pyarray(py))?;
         }

@@ -11,7 +11,7 @@ import numpy as np
 
 from navbound import write
 from navbound.errors import InputError
-from navbound.examples import inertial, planning, procedure, tracks
+from navbound.examples import inertial, planning, procedure, service, tracks
 from navbound.examples.levels import levels
 from navbound.examples.station import Station, measure
 
@@ -33,6 +33,15 @@ STATION = Station(
     wrong=(("G10", (4500.0, 5400.0), 40.0, 0.1),),
 )
 """Two hours at the airport of Paris; five minutes without a signal; a satellite whose ranges are 40 m and more too long."""
+SERVICE = service.Service(
+    begin_s=BEGIN_NS // 10**9,
+    duration_s=3600,
+    seed=67,
+    centre_rad=(STATION.lat_rad, STATION.lon_rad),
+    wrong=("G24", (1500, 1800)),
+    silent=((2985, 3045),),
+)
+"""The first hour of the station: a satellite that must not be used for five minutes, and a minute without a message."""
 LOG = replace(STATION, step_s=1.0, n_epochs=180, seed=61, outages_s=(), wrong=())
 """Three minutes every second, on which nothing happens."""
 DAY = replace(STATION, begin_ns=BEGIN_NS - 9 * _HOUR_NS, n_epochs=2880, seed=62, outages_s=((30_000.0, 30_600.0),), wrong=())
@@ -72,6 +81,10 @@ def _rinex(folder: Path) -> None:
     write.navigation(recording.navigation, folder / "broadcast.rnx")
 
 
+def _sbas(folder: Path) -> None:
+    write.ems(service.messages(SERVICE, measure(STATION, "PARIS")), service.PRN, folder / "service.ems")
+
+
 def _ubx(folder: Path) -> None:
     recording = measure(LOG, "PARIS")
     write.ubx(recording.observations, folder / "receiver.ubx")
@@ -107,6 +120,7 @@ def _plan(folder: Path) -> None:
 
 EXAMPLES: dict[str, Example] = {
     "rinex": Example(("station.rnx", "broadcast.rnx"), "two hours of a station, an outage, a faulty satellite", _rinex),
+    "sbas": Example(("service.ems",), "an hour of the messages of an SBAS satellite for the station, an alert and a gap", _sbas),
     "ubx": Example(("receiver.ubx", "receiver-broadcast.rnx"), "three minutes of a u-blox receiver's raw measurements", _ubx),
     "tracks": Example(("tracks.csv", "tracks-truth.csv"), "a day's approaches to two runways, and where the aircraft were", _tracks),
     "levels": Example(("levels.csv",), "a day of protection levels with their errors", _levels),

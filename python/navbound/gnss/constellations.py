@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -124,12 +124,12 @@ def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bo
         GPS: 24 slots of the standard positioning service's performance standard; expanded: the 27 with its slots B1, D2 and F2 split in
         two. Galileo: 24 in medium orbits (Walker 24/3/1).
         BeiDou-3: 24 likewise, three inclined geosynchronous, three geostationary. Join them with ``+``. Anything else is the path of an
-        almanac, YUMA or SEM, or of a RINEX navigation file: the healthy satellites with a record within a day.
+        almanac, YUMA or SEM, or of a RINEX navigation file: the satellites with a record within a day, all of which say that it is healthy.
     near_ns : int, optional
         A GPS time within ten years of the almanac. Its week has ten bits and may have rolled over: without a time near it
         ``reference_ns`` is None unless the file holds a full week. [ns]
     unhealthy : bool, optional
-        Keep satellites that the almanac calls unhealthy.
+        Keep satellites that the almanac, or a record, calls unhealthy.
 
     Returns
     -------
@@ -154,7 +154,7 @@ def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bo
             raise NotFoundError("name", str(name), "file and no built-in constellation", shipped, "or the path of an almanac")
         content = packed.read(path)
         if _is_navigation(content):
-            return _broadcast(content, path, near_ns)
+            return _broadcast(content, path, near_ns, unhealthy=unhealthy)
         orbits = _core.read_almanac(content, str(path), near_ns)
         healthy, other_time = np.asarray(orbits.pop("health")) == 0, orbits.pop("of_other_time")
         kept = healthy | unhealthy
@@ -193,8 +193,11 @@ def _is_navigation(content: bytes) -> bool:
     return b"RINEX VERSION" in content[:4096].split(b"\n", 1)[0]
 
 
-def _broadcast(content: bytes, path: Path, near_ns: int | None) -> Orbits:
-    """Orbits of a RINEX navigation file at an instant, by default the middle of its records."""
+def _broadcast(content: bytes, path: Path, near_ns: int | None, *, unhealthy: bool) -> Orbits:
+    """Orbits of a RINEX navigation file at an instant, by default the middle of its records.
+
+    A satellite that was unhealthy for a part of the day is left out for all of it: a prediction counts on none that may fail it.
+    """
     navigation = _core.Navigation([(content, str(path))])
     records = navigation.records()
     times = records["orbit_time_ns"]
@@ -204,12 +207,14 @@ def _broadcast(content: bytes, path: Path, near_ns: int | None) -> Orbits:
     reference = (first + last) // 2 if near_ns is None else near_ns
     # Geostationary satellites of BeiDou count from a tilted frame, which plain elements do not know.
     tilted = {s for s, m in zip(records["satellite"], records["message"], strict=True) if m == "D2"}
+    called = _called_unhealthy(records, reference)
     names: list[str] = []
     indices: list[int] = []
     rows: list[NDArray[np.float64]] = []
     for index in range(len(CONSTELLATIONS)):
-        for name, row, age in zip(*navigation.orbits(index, reference), strict=True):
-            if abs(age) <= BROADCAST_AGE_S and name not in tilted:
+        for name, row, age in zip(*navigation.orbits(index, reference, unhealthy=True), strict=True):
+            left_out = name in tilted or (name in called and not unhealthy)
+            if abs(age) <= BROADCAST_AGE_S and not left_out:
                 names.append(name)
                 indices.append(index)
                 rows.append(row)
@@ -217,7 +222,22 @@ def _broadcast(content: bytes, path: Path, near_ns: int | None) -> Orbits:
         raise InputError("near_ns", reference, "ns", f"a time within a day of the file's records, [{first}, {last}]")
     axis, eccentricity, inclination, node, perigee, anomaly, node_rate = np.ascontiguousarray(np.stack(rows).T)
     of = np.array(indices, dtype=np.int64)
-    return Orbits(tuple(names), of, axis, eccentricity, inclination, node, perigee, anomaly, node_rate, reference)
+    notes = () if unhealthy or not called else (f"{path.name}: left out, as records within a day call them unhealthy: {_listed(called)}.",)
+    return Orbits(tuple(names), of, axis, eccentricity, inclination, node, perigee, anomaly, node_rate, reference, notes)
+
+
+def _called_unhealthy(records: dict[str, Any], time_ns: int) -> dict[str, tuple[int, int]]:
+    """Satellites of which a record within a day of a time says that they are unhealthy: how many do, of how many."""
+    near = np.abs(records["orbit_time_ns"] - time_ns) <= BROADCAST_AGE_S * 1e9
+    counts: dict[str, tuple[int, int]] = {}
+    for name, healthy in zip(np.asarray(records["satellite"])[near].tolist(), records["is_healthy"][near].tolist(), strict=True):
+        n_unhealthy, n = counts.get(name, (0, 0))
+        counts[name] = (n_unhealthy + (not healthy), n + 1)
+    return {name: count for name, count in sorted(counts.items()) if count[0]}
+
+
+def _listed(called: dict[str, tuple[int, int]]) -> str:
+    return ", ".join(name if n_unhealthy == n else f"{name} ({n_unhealthy} of {n} records)" for name, (n_unhealthy, n) in called.items())
 
 
 @checked

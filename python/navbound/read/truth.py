@@ -90,6 +90,8 @@ def truth_of(source: str | Path | None, tolerance_s: float, columns: Mapping[str
     if source is None:
         return Truth(None, None, tolerance_s, columns or {})
     text = str(source)
+    if text.strip() in {"", "."}:
+        raise InputError("truth", text, domain=_POINTS)
     number = r"\s*[-+]?\d+(?:\.\d*)?\s*"
     if re.fullmatch(f"{number}(?:,{number})+", text) is None or Path(text).exists():
         return Truth(text, None, tolerance_s, columns or {})

@@ -35,6 +35,7 @@ from navbound.run.pieces import (
     in_pieces,
     is_large,
 )
+from navbound.table.arguments import checked
 from navbound.table.columns import HEARD
 from navbound.table.declare import schema
 
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
     from navbound.run.procedure import Flown, OnProcedure
 
 
+@checked
 def material(
     files: str | Path | Sequence[str | Path],
     *,

@@ -280,7 +280,7 @@ def _holes(kind: _Kind, level_m: Floats, n_sv: NDArray[np.int64], when: _Instant
 
 
 def _unhealthy(request: Request, sky: Satellites) -> list[str]:
-    """Satellites that an almanac calls unhealthy: they are not used."""
+    """Satellites that an almanac or a record of the file calls unhealthy: they are not used."""
     every = {
         s for name in request.constellation for s in gnss.constellation(name, near_ns=request.times.start_ns, unhealthy=True).satellite
     }
@@ -291,7 +291,7 @@ def _unhealthy(request: Request, sky: Satellites) -> list[str]:
 def _assumptions(request: Request, unhealthy: list[str], start_ns: int | None, notes: Sequence[str]) -> list[str]:
     dated = "Orbits of no date: times count from their reference instant." if start_ns is None else "Orbits of the files at those times."
     return [
-        f"{dated} {'Unhealthy by the almanac and not used: ' + ', '.join(unhealthy) + '.' if unhealthy else 'None is called unhealthy.'}",
+        f"{dated} {'Unhealthy by the file and not used: ' + ', '.join(unhealthy) + '.' if unhealthy else 'None is called unhealthy.'}",
         *notes,
         f"Satellites are tracked above {math.degrees(request.mask_rad):g}°. Terrain, bank and interference are not modelled.",
         *entry(Place, "kind", request.kind).words(request.model),

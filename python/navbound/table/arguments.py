@@ -13,7 +13,7 @@ import math
 import types
 import typing
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeGuard, TypeVar
 
 import numpy as np
 
@@ -67,7 +67,7 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
                 # A plain number is what is passed most, and no check of numbers refuses it.
                 if not (takes_floats and type(value) is float):
                     check(name, value)
-                    of_numpy |= isinstance(value, np.number)
+                    of_numpy |= _is_scalar(value)
         try:
             if of_numpy:
                 # Eight bits hold no limit that such a number is compared with.
@@ -80,8 +80,12 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def _plain(value: object) -> object:
-    """A number of NumPy as one of Python."""
-    return value.item() if isinstance(value, np.number) else value
+    """A number or truth value of NumPy as one of Python."""
+    return value.item() if _is_scalar(value) else value
+
+
+def _is_scalar(value: object) -> TypeGuard[np.generic]:
+    return isinstance(value, np.number | np.bool_) or (isinstance(value, np.ndarray) and value.ndim == 0 and value.dtype.kind in "biuf")
 
 
 def _takes_floats(check: Check) -> bool:
@@ -258,6 +262,11 @@ def _mapping_of_numbers(name: str, value: Any) -> None:
         numbers(f"{name}[{shown(key)}]", part)
 
 
+def _mapping_of_texts(name: str, value: Any) -> None:
+    if not isinstance(value, Mapping) or not all(isinstance(part, str) for pair in value.items() for part in pair):
+        raise InputError(name, shown(value), domain="a mapping of texts to texts")
+
+
 def _tuple_of_numbers(count: int) -> Check:
     def check(name: str, value: Any) -> None:
         numbers(name, value)
@@ -288,6 +297,7 @@ _OF_NUMBERS: dict[tuple[str, str], Check] = {
     ("Sequence", "int"): _row_of_whole_numbers,
     ("Sequence", "float"): _row_of_numbers,
     ("Mapping", "(str, ArrayLike)"): _mapping_of_numbers,
+    ("Mapping", "(str, str)"): _mapping_of_texts,
     ("Mapping", "(int, float)"): _mapping_of_numbers,
 }
 _SUBSCRIPTED: dict[str, Check] = {

@@ -14,11 +14,12 @@ from navbound.errors import ConflictError, InputError
 from navbound.table.columns import COVARIANCE
 from navbound.write.geographic import Shape, geojson, kml, shapes
 from navbound.write.measurements import WrittenLog, navigation, observations, ubx
+from navbound.write.sbas import Sent, ems
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Shape", "Written", "WrittenLog", "geojson", "kml", "navigation", "observations", "rtklib", "shapes", "ubx"]
+__all__ = ["Sent", "Shape", "Written", "WrittenLog", "ems", "geojson", "kml", "navigation", "observations", "rtklib", "shapes", "ubx"]
 
 _POSITION = ("time_ns", "est_lat_rad", "est_lon_rad", "est_h_m")
 

@@ -13,6 +13,8 @@ const SLACK_MPS: f64 = 3.0;
 const LATENCIES: f64 = 2.0;
 /// Least time between two places that are remembered \[s\]. Provenance: ours: two minutes in all.
 const PLACE_S: f64 = 8.0;
+/// After a longer gap the aircraft may have flown at any speed in it \[s\]. Provenance: ours.
+const GAP_S: f64 = 60.0;
 /// Places that are remembered.
 pub const PLACES: usize = 16;
 
@@ -25,15 +27,17 @@ pub struct Reached {
     pub place: EcefPosition,
     /// By the larger of the two speeds of every step \[m\].
     pub reported_m: f64,
+    /// Largest speed reported since \[m/s\]: at which a late position may be late.
+    pub fastest_mps: f64,
 }
 
 /// The places of the last two minutes. From each of them the aircraft gets no further than
 ///
 /// ```text
-/// 1.05 way + 3 m/s t + v latency + noise        way = sum of v dt
+/// 1.05 way + 3 m/s t + v latency + noise        way = sum of speed dt
 /// ```
 ///
-/// with the reported speed v. A step is judged by itself elsewhere, with the latency that each may have; here many small ones have it once.
+/// with the reported speed, and v the largest. A step is judged by itself elsewhere, with the latency that each may have; here many small ones have it once.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Ahead {
     /// The last report and its speed \[m/s\].
@@ -47,7 +51,7 @@ pub struct Ahead {
 impl Ahead {
     /// Whether the position of this report, at `here`, is further on than the speeds lead; an unchanged one is as old as the change.
     pub fn is_ahead(&mut self, report: &Report, here: &EcefPosition, unchanged: bool, limits: &Limits) -> bool {
-        let Some(step_m) = self.step_m(report, limits) else {
+        let Some(step_m) = self.step_m(report) else {
             *self = Self::default();
             self.last = Some((report.time, report.speed_mps)).filter(|(_, speed_mps)| speed_mps.is_finite());
             if self.last.is_some() && !unchanged {
@@ -56,6 +60,9 @@ impl Ahead {
             return false;
         };
         self.reported_m += step_m;
+        for place in self.places.iter_mut().flatten() {
+            place.fastest_mps = place.fastest_mps.max(report.speed_mps);
+        }
         self.last = Some((report.time, report.speed_mps));
         if unchanged || report.age_s() > limits.stale_after_s {
             return false;
@@ -68,10 +75,10 @@ impl Ahead {
     }
 
     /// Way by the reported speeds since the last report \[m\]; None where one of the two states none, and after a gap in which it may have been any.
-    fn step_m(&self, report: &Report, limits: &Limits) -> Option<f64> {
+    fn step_m(&self, report: &Report) -> Option<f64> {
         let (time, speed_mps) = self.last?;
         let elapsed_s = report.time.seconds_since(time);
-        let known = (0.0..=limits.latency_s).contains(&elapsed_s) && report.speed_mps.is_finite();
+        let known = (0.0..=GAP_S).contains(&elapsed_s) && report.speed_mps.is_finite();
         known.then(|| elapsed_s * speed_mps.max(report.speed_mps))
     }
 
@@ -80,12 +87,12 @@ impl Ahead {
         // A dated position may be as old as one that is not yet stale, and its date wrong by the latency of dates.
         let late_s = report.fixed.map_or(limits.latency_s, |_| limits.stale_after_s + limits.fix_latency_s);
         let most_m =
-            (1.0 + SHARE) * (self.reported_m - from.reported_m) + SLACK_MPS * elapsed_s + late_s * report.speed_mps + limits.noise_m;
+            (1.0 + SHARE) * (self.reported_m - from.reported_m) + SLACK_MPS * elapsed_s + late_s * from.fastest_mps + limits.noise_m;
         elapsed_s >= LATENCIES * limits.latency_s && here.minus(&from.place).vector().norm() > most_m
     }
 
     fn remember(&mut self, report: &Report, here: &EcefPosition) {
-        let reached = Reached { time: report.time, place: *here, reported_m: self.reported_m };
+        let reached = Reached { time: report.time, place: *here, reported_m: self.reported_m, fastest_mps: report.speed_mps };
         if self.places.iter().all(Option::is_some) {
             self.places.rotate_left(1);
             self.places[PLACES - 1] = None;
@@ -160,6 +167,17 @@ mod tests {
         }
     }
 
+    /// Rows half a minute apart, led by 80 m/s at 124 m/s from the first on: 80 t > 9.2 t + 1340 m after 18.9 s, judged from 20 s on.
+    #[test]
+    fn sparse_reports_are_judged_as_well() {
+        let mut track = Ahead::default();
+        let ahead = (0..20).map(|k| {
+            let each = report(f64::from(30 * k), 204.0 * f64::from(30 * k), 124.0, false);
+            track.is_ahead(&each, &sea_level(&each).unwrap(), false, &LIMITS)
+        });
+        assert_eq!(ahead.collect::<Vec<_>>(), [[false].as_slice(), &[true; 19]].concat());
+    }
+
     #[test]
     fn a_stand_at_walking_pace_is_no_flight() {
         assert!(!ahead(200, false, |t| 14.0 * t, |_| 0.0).is_empty());
@@ -175,7 +193,7 @@ mod tests {
         let unknown = |t: f64| if t == 150.0 { f64::NAN } else { 124.0 };
         assert_eq!(ahead(300, false, |t| 124.0 * t + if t >= 150.0 { 9_000.0 } else { 0.0 }, unknown), []);
         let mut track = Ahead::default();
-        for (time_s, north_m) in [(0.0, 0.0), (10.0, 1240.0), (20.5, 90_000.0), (60.0, 160_000.0)] {
+        for (time_s, north_m) in [(0.0, 0.0), (60.0, 7440.0), (120.5, 90_000.0), (150.0, 93_500.0)] {
             let each = report(time_s, north_m, 124.0, false);
             assert!(!track.is_ahead(&each, &sea_level(&each).unwrap(), false, &LIMITS));
         }

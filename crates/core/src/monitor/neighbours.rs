@@ -14,6 +14,7 @@
 
 use crate::quantity::GpsTime;
 use crate::special::float::{cos, exp, hypot, sin, sqrt};
+use core::f64::consts::TAU;
 
 /// Probability of one such triple under the stated covariances at which it contradicts them. Provenance: ours \[1\].
 pub const RISK: f64 = 1e-9;
@@ -128,7 +129,9 @@ fn explained(apart_m: f64, variance_m2: f64) -> bool {
 
 /// The way from one place to another on a sphere; a meridian and the same one a turn further are one.
 pub(super) fn east_north_m([from_lat, from_lon]: [f64; 2], [lat, lon]: [f64; 2]) -> [f64; 2] {
-    let east = 2.0 * EARTH_RADIUS_M * cos(from_lat) * sin(0.5 * (lon - from_lon));
+    let turned = lon - from_lon;
+    let turns = (turned / TAU + 0.5_f64.copysign(turned)) as i64 as f64;
+    let east = 2.0 * EARTH_RADIUS_M * cos(from_lat) * sin(0.5 * (turned - TAU * turns));
     [east, EARTH_RADIUS_M * (lat - from_lat)]
 }
 
@@ -201,6 +204,21 @@ mod tests {
         assert_eq!(of(0.0), 1.0);
         // sqrt(-2 ln 1e-9) = 6.4379.
         assert!(of(6.437) > RISK && of(6.439) < RISK);
+    }
+
+    /// 0.1 degrees to the east of 45 N: 6371 km * 0.1 degrees * cos 45 = 7862.6 m, whatever the writing of the meridians.
+    #[test]
+    fn a_way_across_a_turn_of_longitude_is_the_way_that_was_flown() {
+        let degrees = |lat: f64, lon: f64| [lat.to_radians(), lon.to_radians()];
+        for turn in [-360.0, 0.0, 360.0] {
+            for (from, to) in [(179.95, -179.95), (359.95, 0.05), (-0.05, 0.05)] {
+                let [east, north] = east_north_m(degrees(45.0, from), degrees(45.0, to + turn));
+                assert!((east - EARTH_RADIUS_M * 0.1_f64.to_radians() * 0.5_f64.sqrt()).abs() < 1e-2, "{from} {to} {turn}: {east}");
+                assert!(north.abs() < 1e-9);
+                let [back, _] = east_north_m(degrees(45.0, to + turn), degrees(45.0, from));
+                assert!((back + east).abs() < 1e-6, "{from} {to} {turn}: {back}");
+            }
+        }
     }
 
     #[test]

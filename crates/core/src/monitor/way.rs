@@ -2,6 +2,8 @@
 
 use super::motion::{Limits, Report, sea_level};
 use crate::quantity::{GpsTime, OutOfDomain};
+use crate::special::float::sin;
+use core::f64::consts::PI;
 
 /// Share of the way by the reported speed that a position must make good, over [`WAY_LATENCIES`]: one of the two latencies may be lost to a
 /// position that is late. Provenance: ours.
@@ -12,11 +14,27 @@ const WAY_LATENCIES: f64 = 2.0;
 const WAY_NOISES: f64 = 4.0;
 /// Shortest time between two places of the way \[s\], so that noise at a high rate does not add up to a flight.
 const PLACE_S: f64 = 1.0;
+/// Half a turn below which the ends are as far apart as the way is long, to 1 % \[rad\]. Derived: 1 - w^2 / 6.
+const WHOLE_RAD: f64 = 0.25;
+/// Turning of an aircraft at 60 degrees of bank, g tan 60 \[m/s2\]. Provenance: ours.
+const TURNING_MPS2: f64 = 17.0;
 /// The straight line over a longer silence is not the way \[s\].
 const SILENCE_S: f64 = 60.0;
 /// Places that are remembered: the slowest aircraft that moves (15 m/s) needs 27 s for the shortest way (400 m). With larger limits the
 /// earliest are forgotten, and a stand is seen later. Derived.
 pub const MARKS: usize = 32;
+
+/// How far apart the ends of a step are at least, however the aircraft turned in it \[m\]: it turns at no more than [`TURNING_MPS2`], and
+/// where it may have gone round nothing is known.
+///
+/// ```text
+/// s sin(w/2) / (w/2)        s = v t, w = a t / v, below one turn
+/// ```
+fn least_chord_m(speed_mps: f64, elapsed_s: f64) -> f64 {
+    let half = 0.5 * TURNING_MPS2 * elapsed_s / speed_mps;
+    let share = if half < WHOLE_RAD { 1.0 } else { sin(half.min(PI)) / half };
+    speed_mps * elapsed_s * share
+}
 
 /// What was flown up to a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,7 +80,7 @@ impl Way {
         let now = Mark {
             time: report.time,
             moved_m: so_far.moved_m + here.minus(&sea_level(&last)?).vector().norm(),
-            reported_m: so_far.reported_m + elapsed_s * last.speed_mps.min(report.speed_mps),
+            reported_m: so_far.reported_m + least_chord_m(last.speed_mps.min(report.speed_mps), elapsed_s),
         };
         if elapsed_s >= PLACE_S {
             self.last = Some((*report, now));
@@ -105,5 +123,60 @@ impl Way {
         let from = self.marks[0].filter(far)?;
         let behind = now.moved_m - from.moved_m < WAY_SHARE * (now.reported_m - from.reported_m) - limits.noise_m;
         behind.then(|| now.time.seconds_since(from.time))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::motion::{Limits, Report};
+    use super::*;
+
+    const LIMITS: Limits = Limits {
+        max_speed_mps: 400.0,
+        speed_factor: 1.25,
+        speed_margin_mps: 25.0,
+        latency_s: 10.0,
+        fix_latency_s: 1.0,
+        noise_m: 100.0,
+        moving_mps: 15.0,
+        stale_after_s: 2.0,
+        settle_s: 30.0,
+        period_s: 0.0,
+    };
+
+    /// How many of sixty rows of an aircraft that circles, or stands, are behind.
+    fn behind(step_s: f64, speed_mps: f64, rate_radps: f64, stands: bool) -> usize {
+        let (mut way, radius_m) = (Way::default(), speed_mps / rate_radps);
+        (0..60)
+            .filter(|k| {
+                let time_s = step_s * f64::from(*k);
+                let [east, north] = if stands { [0.0, 1e-3 * time_s] } else { [(rate_radps * time_s).sin(), (rate_radps * time_s).cos()] };
+                let [east, north] = if stands { [east, north] } else { [radius_m * east, radius_m * north] };
+                let (lat_rad, lon_rad) = (0.8 + north / 6.37e6, 0.1 + east / (6.37e6 * 0.8_f64.cos()));
+                let time = GpsTime::from_nanoseconds((time_s * 1e9) as i64);
+                let report = Report { time, fixed: None, lat_rad, lon_rad, speed_mps, variance_m2: 4.0, height: None };
+                way.is_behind(&report, &LIMITS).unwrap().is_some()
+            })
+            .count()
+    }
+
+    /// A glider at 28 m/s and 15 degrees a second, a jet at 120 m/s and three: whatever the rows, a circle is no stand.
+    #[test]
+    fn a_circle_in_sparse_rows_is_no_stand() {
+        for step_s in [1.0, 5.0, 10.0, 12.0, 20.0, 24.0, 30.0, 59.0] {
+            assert_eq!(behind(step_s, 28.0, 15_f64.to_radians(), false), 0, "{step_s}");
+            assert_eq!(behind(step_s, 120.0, 3_f64.to_radians(), false), 0, "{step_s}");
+        }
+    }
+
+    /// In a step of 10 s at 64 m/s an aircraft turns by 1.33 at either side: 0.73 of 640 m are left.
+    #[test]
+    fn a_stand_in_sparse_rows_is_seen_where_no_turn_explains_it() {
+        for step_s in [1.0, 5.0, 10.0] {
+            assert!(behind(step_s, 64.0, 0.1, true) > 60 - 25, "{step_s}");
+        }
+        assert_eq!(behind(20.0, 28.0, 0.1, true), 0);
+        assert!((least_chord_m(64.0, 10.0) - 640.0 * 1.328_125_f64.sin() / 1.328_125).abs() < 1e-9);
+        assert!(least_chord_m(28.0, 20.0).abs() < 1e-9);
     }
 }

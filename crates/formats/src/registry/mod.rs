@@ -161,7 +161,13 @@ pub const FORMATS: &[Format] = &[
     ),
     refused("tsip", "log in Trimble's TSIP", "three packets one behind the other: 10, identifier, 10 03", foreign::tsip, CONVERT),
     read("ems", "EMS or RTKLIB messages", &[Holds::Messages], "the name ends with .ems or .sbs", |f| signs::named(f, &[".ems", ".sbs"])),
-    read("almanac", "YUMA or SEM almanac", &[Holds::Almanac], "the name ends with .alm or .al3", |f| signs::named(f, &[".alm", ".al3"])),
+    read(
+        "almanac",
+        "YUMA or SEM almanac",
+        &[Holds::Almanac],
+        "the name ends with .alm or .al3, or asterisks and the word almanac in the first line",
+        |f| signs::yuma(f) || signs::named(f, &[".alm", ".al3"]),
+    ),
     read("csv", "text table", POSITIONS, "anything else", |_| true),
 ];
 

@@ -26,6 +26,12 @@ pub(super) fn rtklib(file: &File<'_>) -> bool {
     text(file.content).starts_with(b"%")
 }
 
+/// The heading of a satellite in a YUMA almanac: `******** Week 377 almanac for PRN-01 ********`.
+pub(super) fn yuma(file: &File<'_>) -> bool {
+    let first = text(file.content).split(|byte| *byte == b'\n').next().unwrap_or_default();
+    first.starts_with(b"****") && memchr::memmem::find(&first.to_ascii_lowercase(), b"almanac").is_some()
+}
+
 /// The type of a RINEX file and the twenty columns in which it stands; a compact file holds observations.
 fn rinex<'a>(file: &File<'a>) -> Option<(u8, &'a [u8])> {
     let begin = file.content.get(..file.content.len().min(FIRST_LINE)).unwrap_or_default();

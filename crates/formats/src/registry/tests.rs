@@ -38,6 +38,8 @@ fn signs_name_their_format() {
         (b"% program : RTKPOST\n".to_vec(), "", "rtklib"),
         (b"#cP2020  6 25".to_vec(), "", "sp3"),
         (b"120 25 02 15 17 00 00 2 53".to_vec(), "day.ems", "ems"),
+        (b"******** Week 377 almanac for PRN-01 ********\nID: 01\n".to_vec(), "alm.txt", "almanac"),
+        (b"******** almost ********\n".to_vec(), "alm.txt", "csv"),
         (b"time,lat,lon\n1,2,3\n".to_vec(), "day.csv", "csv"),
         (b"\x10\x41abc\x10\x03\x10\x42a\x10\x10\x10\x03\x10\x43a\x10\x03".to_vec(), "", "tsip"),
         (b"\x10\x41abc\x10\x03\x10\x42a\x10\x10\x10\x03\x10\x43a\x10\x04".to_vec(), "", "csv"),

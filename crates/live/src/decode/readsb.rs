@@ -43,6 +43,12 @@ struct Line<'a> {
     nac_p: Option<u8>,
     #[serde(default)]
     sil: Option<u8>,
+    /// Names of values that multilateration gave.
+    #[serde(default)]
+    mlat: Vec<String>,
+    /// Names of values that a ground station sent.
+    #[serde(default)]
+    tisb: Vec<String>,
 }
 
 /// Whose a line is, and nothing else of it.
@@ -85,7 +91,8 @@ pub(super) fn position(line: &[u8], claims: &Claims) -> Decoded {
         ..Position::new(track, time)
     };
     // A position that others computed or repeat is none that the aircraft claims anything of.
-    if !line.kind.as_deref().is_some_and(|kind| kind.starts_with("adsb_")) {
+    let of_others = line.mlat.iter().chain(&line.tisb).any(|name| matches!(name.as_str(), "lat" | "lon"));
+    if of_others || !line.kind.as_deref().is_some_and(|kind| kind.starts_with("adsb_")) {
         return Ok(known.without(Reason::ForeignPosition));
     }
     Ok(match claims.bounds(claim) {
@@ -121,6 +128,10 @@ mod tests {
         assert_eq!(reason(r#""sil":3"#, r#""sil":1"#), Ok(Some(Reason::NoIntegrityClaim)));
         assert_eq!(reason(r#","sil":3"#, ""), Ok(Some(Reason::NoIntegrityClaim)));
         assert_eq!(reason("adsb_icao", "mlat"), Ok(Some(Reason::ForeignPosition)));
+        for of_others in [r#""mlat":["gs","lat","lon"],"#, r#""tisb":["lon"],"#] {
+            assert_eq!(reason(r#""lat":48.5,"#, &format!(r#""lat":48.5,{of_others}"#)), Ok(Some(Reason::ForeignPosition)));
+        }
+        assert_eq!(reason(r#""lat":48.5,"#, r#""lat":48.5,"mlat":["gs","track"],"tisb":[],"#), Ok(None));
         assert_eq!(reason(r#""type":"adsb_icao","#, ""), Ok(Some(Reason::ForeignPosition)));
         assert_eq!(reason(r#""lat":48.5,"#, ""), Err(Refused::NoPosition));
         assert_eq!(reason("4CA123", "<b>"), Err(Refused::TrackName));

@@ -28,7 +28,8 @@ def east_north_m(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArra
     ndarray, shape (n, 2)
         East and north; a meridian and the same one a turn further are one. [m]
     """
-    east = 2.0 * EARTH_RADIUS_M * np.cos(start[:, 0]) * np.sin(0.5 * (end[:, 1] - start[:, 1]))
+    turned = end[:, 1] - start[:, 1]
+    east = 2.0 * EARTH_RADIUS_M * np.cos(start[:, 0]) * np.sin(0.5 * (turned - 2.0 * np.pi * np.round(turned / (2.0 * np.pi))))
     north = EARTH_RADIUS_M * (end[:, 0] - start[:, 0])
     return np.column_stack(np.broadcast_arrays(east, north))
 

@@ -412,7 +412,7 @@ def assign(
     return Assignment(columns, times, [n for n in free if n not in stating], statements, again, absent)
 
 
-_COMPARED = ("est_lat_rad", "est_lon_rad", "ground_speed_mps")
+_COMPARED = ("est_lat_rad", "est_lon_rad", "ground_speed_mps", "nac_p", "nic")
 """Quantities of which further columns are compared with the one that is read."""
 
 

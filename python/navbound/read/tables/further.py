@@ -10,7 +10,7 @@ import polars as pl
 from navbound.errors import FormatError
 from navbound.read.checks.statements import STALE_AFTER_S
 from navbound.read.tables.cells import largest, no_field, numbers
-from navbound.read.tables.columns import declare
+from navbound.read.tables.columns import NO_COLUMN, declare
 from navbound.read.tables.times import TimeFacts, converted, understand
 from navbound.units import EARTH_RADIUS_M
 
@@ -22,18 +22,29 @@ if TYPE_CHECKING:
 
 APART_M = 100.0
 """Two columns of one position contradict each other beyond it: two antennas and two filters do not. Provenance: ours. [m]"""
+SPEEDS_APART_MPS, SPEEDS_APART = 10.0, 0.1
+"""Two columns of one speed contradict each other beyond this and this share of the larger; filters do not. Provenance: ours. [m/s, 1]"""
+SPEEDS_SHARE = 0.2
+"""Share of rows from which two speeds that contradict each other leave nothing shown. Provenance: ours. [1]"""
+_VELOCITY = ("vel_n_mps", "vel_e_mps")
+_INDICATORS = ("nac_p", "nic")
+"""Of two columns the smaller counts: the less is claimed."""
 _SCALE_M = {"est_lat_rad": pl.lit(EARTH_RADIUS_M), "est_lon_rad": EARTH_RADIUS_M * pl.col("est_lat_rad").cos()}
 """Metres of a radian, for the quantities of a position."""
 
 
 class Further:
-    """Compares further columns with those that are read, over all rows: the largest speed counts, positions and times must agree."""
+    """Compares further columns with those that are read, over all rows.
+
+    The largest speed and the smallest indicator count; positions and times must agree, and most of the speeds.
+    """
 
     def __init__(self, path: Path, mapping: Assignment) -> None:
         self._path, self._mapping = path, mapping
         self._time = next((column for column in mapping.again if column.quantity == "time"), None)
         self._facts, self._unit = list[TimeFacts](), ""
         self._apart_m: dict[str, float] = {}
+        self._speeds: dict[str, tuple[int, int, float]] = {}
         self._apart_s = 0.0
 
     def see(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
@@ -47,9 +58,21 @@ class Further:
                 apart -= 2.0 * math.pi * (apart / (2.0 * math.pi)).round()
                 apart_m = part.select(apart_m=apart.abs() * _SCALE_M[column.quantity])["apart_m"]
                 self._apart_m[column.name] = max(self._apart_m.get(column.name, 0.0), largest(apart_m))
+            elif column.quantity in _INDICATORS:
+                part = part.with_columns(pl.min_horizontal(column.quantity, other).alias(column.quantity))
             else:
+                self._see_speeds(column.name, part[column.quantity], other)
                 part = part.with_columns(pl.max_horizontal(column.quantity, other).alias(column.quantity))
+        if {"ground_speed_mps", *_VELOCITY} <= set(part.columns):
+            of_velocity = part.select(speed=pl.sum_horizontal(pl.col(name) ** 2 for name in _VELOCITY).sqrt())["speed"]
+            self._see_speeds(_VELOCITY[0], part["ground_speed_mps"], of_velocity)
         return part
+
+    def _see_speeds(self, name: str, one: pl.Series, other: pl.Series) -> None:
+        apart = (one - other).abs()
+        far = apart > SPEEDS_APART_MPS + SPEEDS_APART * pl.select(pl.max_horizontal(one, other)).to_series()
+        n, n_far, most = self._speeds.get(name, (0, 0, 0.0))
+        self._speeds[name] = (n + len(apart.drop_nulls().drop_nans()), n_far + int(far.sum() or 0), max(most, largest(apart)))
 
     def doubts(self) -> list[str]:
         """Positions of which two columns say something else, after all rows."""
@@ -58,6 +81,18 @@ class Further:
             apart_m, used = self._apart_m.get(column.name, 0.0), self._mapping.columns.get(column.quantity)
             if used is not None and apart_m > APART_M:
                 words.append(self._doubt("one quantity", (used.name, column.name), f"{apart_m:.0f} m", column.quantity))
+        used = self._mapping.columns.get("ground_speed_mps")
+        for name, (n, n_far, most_mps) in self._speeds.items():
+            if used is not None and n_far > SPEEDS_SHARE * n:
+                velocity = self._mapping.columns.get(name)
+                apart = f"at {n_far} of {n} rows up to {most_mps:.0f} m/s"
+                if velocity is None:
+                    words.append(self._doubt("one speed", (used.name, name), apart, "ground_speed_mps"))
+                else:
+                    words.append(
+                        f"{self._path.name}: the speed “{used.name}” and that of the velocity “{velocity.name}” are {apart} apart; "
+                        f"{declare(f'ground_speed_mps={NO_COLUMN}')}, or {name}={NO_COLUMN}, to leave one out; nothing is shown until then"
+                    )
         return words
 
     def times(self, frame: pl.DataFrame) -> dict[str, pl.Series]:

@@ -331,6 +331,11 @@ def _readsb(source: Source, data: dict[str, Any]) -> dict[str, list[Any]]:
     if not all(isinstance(row, list) and len(row) >= 9 for row in trace) or not isinstance(data.get("timestamp"), (int, float)):
         raise FormatError(source.path, "not a readsb trace: a start time and rows of at least nine items are needed", field="trace")
     details = [row[8] if isinstance(row[8], dict) else {} for row in trace]
+    kinds, kind = list[str | None](), None
+    for row, each in zip(trace, details, strict=True):
+        # Of the row itself, or of the last details.
+        kind = each.get("type", kind)
+        kinds.append(row[9] if len(row) > 9 and isinstance(row[9], str) else kind)
     start = data["timestamp"]
     seconds = [row[0] for row in trace]
     if not all(isinstance(s, (int, float)) for s in seconds):
@@ -343,6 +348,7 @@ def _readsb(source: Source, data: dict[str, Any]) -> dict[str, list[Any]]:
         "geoaltitude": [row[10] if len(row) > 10 else None for row in trace],
         "icao24": [str(data.get("icao", source.stem))] * len(trace),
         "callsign": [d.get("flight") for d in details],
+        "type": kinds,
         "nav_qnh": [d.get("nav_qnh") for d in details],
         "nac_p": [d.get("nac_p") for d in details],
         "nic": [d.get("nic") for d in details],
