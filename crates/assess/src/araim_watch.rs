@@ -13,6 +13,7 @@ use navbound_core::frame::{Displacement, Geodetic};
 use navbound_core::quantity::{GpsTime, Reason, Unavailable};
 use navbound_core::signal::SatelliteId;
 use navbound_core::solution::consistency::Consistency;
+use navbound_core::solution::led_off::Compared;
 use navbound_core::solution::point::{self, Fix, MOST_RANGES, Range, sighted};
 use navbound_formats::rinex::{Navigation, Observations};
 
@@ -29,6 +30,8 @@ pub struct Watched {
     pub monitored: Monitored,
     /// Residuals of all satellites against the error model, where there are enough.
     pub consistency: Option<Consistency>,
+    /// Its satellites, to compare their codes with their phases.
+    compared: Vec<Compared>,
 }
 
 /// Why an epoch's position, or its level, is not simply there.
@@ -58,6 +61,7 @@ pub fn watch(
         job,
         || Desk::new(promise.support.map(|s| s.p_const), true),
         |desk, time, ranges, tally| epoch(desk, time, ranges, tally, &Rules { job, promise }, service),
+        |watched| Some(&watched.as_ref().ok()?.compared),
     )
 }
 
@@ -71,6 +75,8 @@ pub(crate) struct Taken {
     pub(crate) satellites: Vec<SatelliteId>,
     /// The residuals against the error model for accuracy, where there are enough.
     pub(crate) consistency: Option<Consistency>,
+    /// The satellites, to compare their codes with their phases.
+    pub(crate) compared: Vec<Compared>,
 }
 
 /// What a monitor believes of ranges.
@@ -102,7 +108,9 @@ pub(crate) fn taken(
     }
     tally.leave(Unused::BelowMask, ranges.len() - sights.len());
     let consistency = Consistency::of(sights.iter().map(Sight::weighted_for_accuracy).zip(residuals_m.iter().copied())).ok();
-    Ok(Taken { fix, residuals_m, satellites, consistency })
+    let compared =
+        sights.iter().zip(&satellites).map(|(s, satellite)| Compared { satellite: *satellite, unit: s.unit, weight: 1.0 / s.accuracy_m2 });
+    Ok(Taken { fix, residuals_m, compared: compared.collect(), satellites, consistency })
 }
 
 fn epoch(
@@ -113,11 +121,11 @@ fn epoch(
     rules: &Rules<'_>,
     service: &Service,
 ) -> Result<Watched, NoLevels> {
-    let Taken { fix, residuals_m, satellites, consistency } = taken(ranges, time, rules, &mut desk.sights, tally)?;
+    let Taken { fix, residuals_m, satellites, consistency, compared } = taken(ranges, time, rules, &mut desk.sights, tally)?;
     let monitored = desk.monitored(&residuals_m, service)?;
     let [east, north, up] = monitored.step;
     let position = fix.position.moved(&Displacement::new(east, north, up)).map_err(Unavailable::from)?;
     let out = |i: usize| i < MOST_SATELLITES && monitored.excluded >> i & 1 == 1;
     let excluded = satellites.iter().enumerate().filter(|(i, _)| out(*i)).map(|(_, s)| *s).collect();
-    Ok(Watched { position, n_sv: satellites.len(), excluded, monitored, consistency })
+    Ok(Watched { position, n_sv: satellites.len(), excluded, monitored, consistency, compared })
 }

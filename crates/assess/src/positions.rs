@@ -1,6 +1,7 @@
 //! Observations and navigation messages to positions, epoch by epoch on all cores.
 
 use crate::receivers::heard::{Heard, Listed};
+use crate::receivers::phases::Compare;
 use crate::receivers::ranges::{Records, Source, Tally, Unused, plans};
 use crate::receivers::signals::Plan;
 pub use crate::receivers::signals::Signals;
@@ -13,6 +14,7 @@ use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Constellation, SatelliteId};
 use navbound_core::solution::constellations::{Constellations, Treatment};
 use navbound_core::solution::declared::{Declarations, Doubt};
+use navbound_core::solution::led_off::Compared;
 use navbound_core::solution::mixture::Mixture;
 use navbound_core::solution::point::{self, Fix, Offsets, Range, Settings, Used};
 use navbound_core::solution::rivals::Rival;
@@ -141,7 +143,7 @@ pub fn positions(observations: &Observations, navigation: &Navigation, precise: 
         solution.tally.add(&tally);
     }
     solution.tally.leave(Unused::ConstellationLeftOut, solver.treat(&mut solved));
-    declare(&observations.time, solved, job, &mut solution);
+    declare(&source, solved, job, &mut solution);
     solution
 }
 
@@ -153,6 +155,8 @@ struct Solved {
     /// The way to where a constellation that was left out puts the receiver \[m\].
     rival: Option<Rival>,
     kept: Vec<(SatelliteId, Used)>,
+    /// Its satellites, to compare their codes with their phases.
+    compared: Vec<Compared>,
     /// What was heard, where it is kept.
     listed: Option<Listed>,
 }
@@ -173,17 +177,16 @@ struct Solver<'a> {
 
 impl Solver<'_> {
     fn solve(&self, epoch: usize, ranges: &[Range], near: Option<&EcefPosition>, offsets: &Offsets) -> Solved {
-        let mut kept = Vec::new();
+        let (mut kept, mut compared) = (Vec::new(), Vec::with_capacity(ranges.len()));
         let keep = |u: Used| {
+            compared.push(Compared { satellite: ranges[u.index].satellite, unit: u.unit, weight: u.weight });
             if self.job.keep_ranges {
                 kept.push((ranges[u.index].satellite, u));
             }
         };
         let solved = point::solve_readings(ranges, self.source.observations.time[epoch], &self.job.settings, near, offsets, keep);
-        match solved {
-            Ok((fix, mixture)) => Solved { fix: Ok(fix), mixture: mixture.map(Box::new), rival: None, kept, listed: None },
-            Err(why) => Solved { fix: Err(why), mixture: None, rival: None, kept, listed: None },
-        }
+        let (fix, mixture) = solved.map_or_else(|why| (Err(why), None), |(fix, mixture)| (Ok(fix), mixture.map(Box::new)));
+        Solved { fix, mixture, rival: None, kept, compared, listed: None }
     }
 
     /// Solve again the epochs with a constellation that does not fit, without it, and those with few ranges to spare, with the offsets of
@@ -242,13 +245,17 @@ impl Solver<'_> {
 const FEW: usize = 3;
 
 /// Statuses and covariances, which the receiver's past has a part in, through the file in its order.
-fn declare(times: &[GpsTime], solved: Vec<Solved>, job: &Job, out: &mut Positions) {
+fn declare(source: &Source<'_>, solved: Vec<Solved>, job: &Job, out: &mut Positions) {
     let mut declarations = Declarations::default();
-    for (time, Solved { fix, mixture, rival, mut kept, listed }) in times.iter().zip(solved) {
+    let mut phases = Compare::new(source);
+    for (epoch, Solved { fix, mixture, rival, mut kept, compared, listed }) in solved.into_iter().enumerate() {
+        let time = source.observations.time[epoch];
+        let led = phases.next(epoch, fix.is_ok().then_some(&compared[..]));
         let own = fix.as_ref().map_or(1.0, |f| f.inflation);
         let (fix, doubt) = match fix {
             Ok(mut fix) => {
-                let doubt = declarations.declare(*time, &mut fix, mixture.as_deref(), rival);
+                let doubt = declarations.declare(time, &mut fix, mixture.as_deref(), rival);
+                let doubt = led.map_or(doubt, |way| fix.led_off(&way, doubt));
                 let doubt = doubt.or(out.undescribed.then_some(Doubt::IonosphereUndescribed));
                 (doubt.and_then(|d| d.refusal(&fix)).map_or(Ok(fix), Err), doubt)
             }
@@ -282,16 +289,31 @@ pub struct Watch<T> {
     pub signals: BTreeMap<char, &'static str>,
     /// Share of the pseudoranges that the carrier smoothed; `None` without smoothing.
     pub smoothed_share: Option<f64>,
+    /// Epochs whose codes moved together as their phases did not.
+    led_off: Vec<bool>,
+}
+
+impl<T> Watch<T> {
+    /// Why each epoch's position, or its level, is not simply there, by what the monitor says by itself. Codes that are led off together agree
+    /// with each other, and no level covers them.
+    pub fn reasons(&self, own: impl Fn(&T) -> Option<Reason>) -> Vec<Option<Reason>> {
+        let of = |(epoch, led): (&T, &bool)| {
+            let own = own(epoch);
+            if *led && own.is_none_or(|r| r.status().usable()) { Some(Reason::CodesLedOff) } else { own }
+        };
+        self.epochs.iter().zip(&self.led_off).map(of).collect()
+    }
 }
 
 /// What `each` makes of every epoch's ranges, with what each range has beyond a smoothed one; it counts what it leaves. `desk` makes what a
-/// task keeps from one epoch to the next; results must not depend on it.
+/// task keeps from one epoch to the next; results must not depend on it. `compared` is whose codes are compared with their phases.
 pub fn each_epoch<D, T: Send>(
     observations: &Observations,
     navigation: &Navigation,
     job: &Job,
     desk: impl Fn() -> D + Sync + Send,
     each: impl Fn(&mut D, GpsTime, (&[Range], &[Beyond]), &mut Tally) -> T + Sync + Send,
+    compared: impl Fn(&T) -> Option<&[Compared]>,
 ) -> Watch<T> {
     let records = Records::new(navigation, None);
     let plans = plans(observations, &records, &job.systems, job.signals);
@@ -309,11 +331,14 @@ pub fn each_epoch<D, T: Send>(
     let epochs: Vec<usize> = (0..observations.n_epochs()).collect();
     let outcomes: Vec<_> = epochs.par_chunks(EPOCHS_PER_TASK).map(task).collect();
     let smoothed_share = smoothed.as_ref().map(Smoothed::share);
-    let mut watch = Watch { epochs: Vec::with_capacity(epochs.len()), tally: Tally::default(), signals: names(&plans), smoothed_share };
+    let (signals, tally, led_off) = (names(&plans), Tally::default(), Vec::new());
+    let mut watch = Watch { epochs: Vec::with_capacity(epochs.len()), tally, signals, smoothed_share, led_off };
     for (results, tally) in outcomes {
         watch.epochs.extend(results);
         watch.tally.add(&tally);
     }
+    let mut phases = Compare::new(&source);
+    watch.led_off = watch.epochs.iter().enumerate().map(|(epoch, one)| phases.next(epoch, compared(one)).is_some()).collect();
     watch
 }
 

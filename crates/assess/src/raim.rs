@@ -15,6 +15,7 @@ use navbound_core::frame::{Displacement, Geodetic};
 use navbound_core::quantity::{GpsTime, OutOfDomain, Reason, Unavailable};
 use navbound_core::signal::{Constellation, SatelliteId};
 use navbound_core::solution::consistency::Consistency;
+use navbound_core::solution::led_off::Compared;
 use navbound_core::solution::point::Range;
 use navbound_formats::rinex::{Navigation, Observations};
 use navbound_path::AtIndex;
@@ -152,6 +153,8 @@ pub struct Watched {
     pub tested: Tested,
     /// Residuals of all satellites against the error model, where there are enough.
     pub consistency: Option<Consistency>,
+    /// Its satellites, to compare their codes with their phases.
+    compared: Vec<Compared>,
 }
 
 /// Why an epoch's position, or its level, is not simply there.
@@ -179,7 +182,8 @@ pub fn watch(
 ) -> Watch<Result<Watched, Unavailable>> {
     let desk = || Desk::new(requirement);
     let rules = Rules { job, promise };
-    each_epoch(observations, navigation, job, desk, |desk, time, ranges, tally| epoch(desk, time, ranges, tally, &rules))
+    let each = |desk: &mut Desk, time, ranges: (&[Range], &[Beyond]), tally: &mut Tally| epoch(desk, time, ranges, tally, &rules);
+    each_epoch(observations, navigation, job, desk, each, |watched| Some(&watched.as_ref().ok()?.compared))
 }
 
 fn epoch(
@@ -198,5 +202,5 @@ fn epoch(
         None => taken.fix.position,
     };
     let excluded = tested.excluded.and_then(|i| taken.satellites.get(i).copied());
-    Ok(Watched { position, excluded, tested, consistency: taken.consistency })
+    Ok(Watched { position, excluded, tested, consistency: taken.consistency, compared: taken.compared })
 }

@@ -87,17 +87,28 @@ fn slot(satellite: SatelliteId) -> usize {
 
 fn track(observations: &Observations, system: usize, code: usize) -> Option<Track> {
     let constellation = Constellation::from_index(system)?;
-    let [_, band, attribute] = *observations.codes[system].get(code)?;
-    let phases = |serves: fn(&Code, u8, u8) -> bool| {
-        let of_band = observations.codes[system].iter().enumerate().filter(move |(_, c)| c[0] == b'L' && serves(c, band, attribute));
-        of_band.map(|(k, c)| (k, c[1]))
-    };
-    // The same signal's phase first, then any of the carrier.
-    let same = phases(|c, band, attribute| c[1] == band && c[2] == attribute);
-    let own: Vec<usize> = same.chain(phases(|c, band, attribute| c[1] == band && c[2] != attribute)).map(|(k, _)| k).collect();
-    let other = phases(|c, band, _| c[1] != band).filter_map(|(k, band)| Some((k, Carrier::from_band(constellation, band)?)));
+    let [_, band, _] = *observations.codes[system].get(code)?;
+    let own = own_phases(observations, system, code);
+    let other = observations.codes[system].iter().enumerate().filter(|(_, c)| c[0] == b'L' && c[1] != band);
+    let other = other.filter_map(|(k, c)| Some((k, Carrier::from_band(constellation, c[1])?)));
     let carrier = Carrier::from_band(constellation, band)?;
     (!own.is_empty()).then(|| Track { code, own, carrier, second: other.collect() })
+}
+
+/// Columns of the phases of a code's own carrier: the same signal's first, then any.
+pub(crate) fn own_phases(observations: &Observations, system: usize, code: usize) -> Vec<usize> {
+    let codes = &observations.codes[system];
+    let Some([_, band, attribute]) = codes.get(code) else { return Vec::new() };
+    let of = |same: bool| {
+        let serves = move |c: &Code| c[0] == b'L' && c[1] == *band && (c[2] == *attribute) == same;
+        codes.iter().enumerate().filter(move |(_, c)| serves(c)).map(|(k, _)| k)
+    };
+    of(true).chain(of(false)).collect()
+}
+
+/// Whether the receiver flags a loss of lock at a value, by its place among all values.
+pub(crate) fn lost(observations: &Observations, place: usize) -> bool {
+    (observations.indicator[place] >> 4) & LOST != 0
 }
 
 impl Smoothed {
@@ -112,8 +123,8 @@ impl Smoothed {
         let first = track.own.iter().copied().find(|c| there(*c));
         let second = track.second.iter().copied().find(|(c, _)| there(*c));
         let metres = |column: usize, carrier: Carrier| Metres::new(o.value[at + column] * carrier.wavelength_m());
-        let lock = |column: usize| (o.indicator[at + column] >> 4) & LOST != 0;
-        let (phase, used, mut lost) = match (form, first, second) {
+        let lock = |column: usize| lost(o, at + column);
+        let (phase, used, mut broken) = match (form, first, second) {
             (Form::Single, Some(f), _) => (metres(f, track.carrier), Some((f, f)), lock(f)),
             (Form::DivergenceFree, Some(f), Some((s, carrier))) => {
                 let (one, two) = (metres(f, track.carrier), metres(s, carrier));
@@ -122,9 +133,9 @@ impl Smoothed {
             }
             _ => (Metres::new(f64::NAN), None, true),
         };
-        lost |= o.interrupted[epoch] || used != state.used;
+        broken |= o.interrupted[epoch] || used != state.used;
         state.used = used;
-        let smoothed = state.channel.smoothed(how, o.time[epoch], Metres::new(code), phase, lost).m();
+        let smoothed = state.channel.smoothed(how, o.time[epoch], Metres::new(code), phase, broken).m();
         self.n_smoothed += usize::from(smoothed != code);
         self.value[at + track.code] = smoothed;
         self.noise_share[at + track.code] = state.channel.noise_share() as f32;

@@ -3,6 +3,7 @@
 mod araim;
 mod flights;
 mod fused;
+mod led_off;
 mod plausible;
 mod raim;
 mod smoothing;

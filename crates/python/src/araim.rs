@@ -311,7 +311,7 @@ fn araim_watch<'py>(
     let names =
         |w: &Result<Watched, NoLevels>| w.as_ref().map_or_else(|_| Vec::new(), |w| w.excluded.iter().map(ToString::to_string).collect());
     d.set_item("excluded", watched.iter().map(names).collect::<Vec<Vec<String>>>())?;
-    let reasons: Vec<_> = watched.iter().map(reason).collect();
+    let reasons = watch.reasons(reason);
     d.set_item("status", reasons.iter().map(|r| status::of(*r)).collect::<Vec<_>>())?;
     d.set_item("reason_id", reasons.iter().map(|r| status::id(*r)).collect::<Vec<_>>())?;
     d.set_item("refusal", watched.iter().map(|w| w.as_ref().err().map(ToString::to_string).unwrap_or_default()).collect::<Vec<_>>())?;

@@ -129,7 +129,7 @@ fn raim_watch<'py>(
     d.set_item("est_h_m", number(|w| w.position.height.m()))?;
     let name = |w: &Result<Watched, Unavailable>| w.as_ref().ok().and_then(|w| w.excluded).map(|s| s.to_string()).unwrap_or_default();
     d.set_item("excluded", watched.iter().map(name).collect::<Vec<String>>())?;
-    let reasons: Vec<_> = watched.iter().map(raim::reason).collect();
+    let reasons = watch.reasons(raim::reason);
     d.set_item("status", reasons.iter().map(|r| status::of(*r)).collect::<Vec<_>>())?;
     d.set_item("reason_id", reasons.iter().map(|r| status::id(*r)).collect::<Vec<_>>())?;
     d.set_item("refusal", watched.iter().map(|w| w.as_ref().err().map(ToString::to_string).unwrap_or_default()).collect::<Vec<_>>())?;

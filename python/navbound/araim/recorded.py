@@ -87,7 +87,9 @@ def watch(
     )
     outcome = np.array(recorded.pop("words"))[recorded.pop("outcome")]
     decision = np.array(recorded.pop("decision"), dtype=np.str_)
-    usable = (outcome == "ok") & (decision != "not_excluded")
+    # Codes that are led off together agree with each other: no level covers them.
+    led_off = np.array(recorded["reason_id"], dtype=np.str_) == "codes_led_off"
+    usable = (outcome == "ok") & (decision != "not_excluded") & ~led_off
     columns = {
         **{name: np.where(usable, recorded[name], np.nan) for name in ("hpl_m", "vpl_m", "emt_m")},
         **{name: recorded[name] for name in ("n_sv", "n_excluded", "n_modes")},

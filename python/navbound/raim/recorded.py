@@ -81,7 +81,9 @@ def watch(
     )
     outcome = np.array(recorded.pop("words"))[recorded.pop("outcome")]
     decision = np.array(recorded.pop("decision"), dtype=np.str_)
-    usable = np.isin(decision, ["none", "excluded"]) & (outcome == "ok")
+    # Codes that are led off together agree with each other: no level covers them.
+    led_off = np.array(recorded["reason_id"], dtype=np.str_) == "codes_led_off"
+    usable = np.isin(decision, ["none", "excluded"]) & (outcome == "ok") & ~led_off
     levels = ("hpl_m", "vpl_m", "hpl_slope_m", "vpl_slope_m")
     columns = {
         **{name: np.where(usable, recorded[name], np.nan) for name in levels},

@@ -337,7 +337,7 @@ const BEIDOU_PAIR_BIAS_M: f64 = 2.0;
 /// ```text
 /// one: 1;    two: f1^2 / (f1^2 - f2^2) and -f2^2 / (f1^2 - f2^2), free of the ionosphere to first order
 /// ```
-fn combination(measured: &[Measured]) -> ([f64; 2], f64) {
+pub(super) fn combination(measured: &[Measured]) -> ([f64; 2], f64) {
     match measured {
         [first, second] => (ionosphere_free([first.carrier, second.carrier]), 0.0),
         [only] => ([1.0, 0.0], ionosphere_factor(only.carrier)),

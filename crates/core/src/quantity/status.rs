@@ -267,6 +267,8 @@ reasons! {
     /// Of a filtered position.
     ImuBias, "imu_bias", Degraded,
         "the filter has found biases that its unit does not have as declared: the unit or the positions are wrong";
+    /// Of positions from observations.
+    CodesLedOff, "codes_led_off", Degraded, "the codes of the satellites moved together as their carrier phases did not";
 }
 
 impl Reason {

@@ -5,7 +5,7 @@
 //!            or one to spare and trace P <= 2 trace V, no two constellations give two positions, and the declared 95 % circle is within
 //!            0.1 NM
 //! declared = V;   with other readings P, widened to reach each that is not negligible, and to hold its uncertainty where the position is ok;
-//!            with the memory P + f V; with the way d to another constellation's position + d d'
+//!            with the memory P + f V; with the way d to another constellation's position, or to that without what led the codes off, + d d'
 //! ```
 //!
 //! V is the covariance of the position itself, P that over all readings of its ranges ([`Mixture`]), f the variance factor of
@@ -21,6 +21,7 @@ use crate::frame::Covariance;
 use crate::quantity::{GpsTime, Reason, Risk, Unavailable};
 use crate::special::float::exp;
 use crate::special::radius::RadiusLaw;
+use nalgebra::Vector3;
 
 /// What is known of the surroundings fades with this \[s\].
 const MEMORY_S: f64 = 60.0;
@@ -52,6 +53,8 @@ pub enum Doubt {
     ConstellationsContradict,
     /// A circle too wide to be of use.
     WideCircle,
+    /// The codes moved together as their phases did not.
+    CodesLedOff,
     /// Single frequencies, and no message describes the ionosphere.
     IonosphereUndescribed,
     /// A height that no receiver has.
@@ -64,7 +67,7 @@ pub enum Doubt {
 
 impl Doubt {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::ResidualsContradict,
         Self::RecentResidualsContradict,
         Self::NoRedundancy,
@@ -73,6 +76,7 @@ impl Doubt {
         Self::ReadingUnconfirmed,
         Self::ConstellationsContradict,
         Self::WideCircle,
+        Self::CodesLedOff,
         Self::IonosphereUndescribed,
         Self::ImplausibleHeight,
         Self::ImplausibleDilution,
@@ -90,6 +94,7 @@ impl Doubt {
             Self::ReadingUnconfirmed => Reason::ReadingUnconfirmed,
             Self::ConstellationsContradict => Reason::ConstellationsContradict,
             Self::WideCircle => Reason::WideCircle,
+            Self::CodesLedOff => Reason::CodesLedOff,
             Self::IonosphereUndescribed => Reason::IonosphereUndescribed,
             Self::ImplausibleHeight => Reason::ImplausibleHeight,
             Self::ImplausibleDilution => Reason::ImplausibleDilution,
@@ -100,6 +105,11 @@ impl Doubt {
     /// Whether there is no position at all.
     pub const fn refuses(self) -> bool {
         matches!(self, Self::ImplausibleHeight | Self::ImplausibleDilution | Self::ImplausibleJump)
+    }
+
+    /// Whether the ranges contradict each other or there is no position.
+    const fn contradicts(self) -> bool {
+        self.refuses() || matches!(self, Self::ResidualsContradict | Self::RecentResidualsContradict | Self::ConstellationsContradict)
     }
 
     /// The refusal of a solved position, where this is one.
@@ -195,6 +205,16 @@ impl Declarations {
 }
 
 impl Fix {
+    /// What it is doubted for where the codes lead it off by `way` \[m\]: its covariance reaches the place without. Ranges that contradict each
+    /// other say nothing together, and their doubt stays.
+    pub fn led_off(&mut self, way: &Vector3<f64>, doubt: Option<Doubt>) -> Option<Doubt> {
+        if doubt.is_some_and(Doubt::contradicts) {
+            return doubt;
+        }
+        self.covariance = Covariance::claim_symmetric(self.covariance.matrix() + way * way.transpose());
+        Some(Doubt::CodesLedOff)
+    }
+
     /// The residual test passed with nothing excluded, and three ranges to spare say that it could have failed.
     fn stands_alone(&self) -> bool {
         self.consistent && self.n_excluded == 0 && self.spare >= CONFIRMED

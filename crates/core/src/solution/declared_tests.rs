@@ -86,3 +86,15 @@ fn every_doubt_has_an_id_of_its_own_and_only_refusals_refuse() {
         }
     }
 }
+
+#[test]
+fn codes_that_are_led_off_outweigh_what_is_unconfirmed_and_not_what_contradicts() {
+    let way = Vector3::new(30.0, 0.0, 40.0);
+    for doubt in Doubt::ALL.into_iter().map(Some).chain([None]) {
+        let mut fix = fix(1.0, &[]);
+        let reported = fix.led_off(&way, doubt);
+        let stays = doubt.is_some_and(|d| d.refuses() || d.reason().id().contains("contradict"));
+        let wider = fix.covariance.matrix()[(0, 0)] - 1.0;
+        assert_eq!((reported, wider), if stays { (doubt, 0.0) } else { (Some(Doubt::CodesLedOff), 900.0) }, "{doubt:?}");
+    }
+}

@@ -8,6 +8,7 @@ pub mod dme;
 mod epoch;
 pub mod extraction;
 pub mod ins;
+pub mod led_off;
 pub mod mixture;
 pub mod plausible;
 pub mod point;

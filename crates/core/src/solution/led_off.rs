@@ -1,0 +1,210 @@
+//! Whether the codes of all satellites moved together while their carrier phases stood still.
+//!
+//! ```text
+//! d_i = (C - lambda Phi)_t - (C - lambda Phi)_t0 = -u_i' S + b + noise      S: where the codes lead the position; b: the clock
+//! led off: S' P^-1 S beyond the chi-square of three at 1e-9, |S| beyond 15 m, and residuals that fit (1e-3)
+//! ```
+//!
+//! Position and motion of the receiver are in code and phase alike, and d has none of them. A receiver that moves its code by milliseconds
+//! moves b alone. Provenance: ours, of standard parts; the limits are inferred.
+
+use super::point::MOST_RANGES;
+use super::wls::{Normal, Row};
+use crate::quantity::GpsTime;
+use crate::signal::{Constellation, SatelliteId};
+use crate::special::gamma::chi_square_tail;
+use nalgebra::{Matrix3, Vector3};
+
+/// References are renewed after this \[s\].
+pub const RENEWED_S: f64 = 600.0;
+/// A longer silence of a satellite ends its arc of phase \[s\], as that of smoothing.
+const LONGEST_GAP_S: f64 = 60.0;
+/// Least shift that is said \[m\].
+pub const LEAST_M: f64 = 15.0;
+/// Risk that noise alone is beyond its deviation.
+const RISK: f64 = 1e-9;
+/// Risk of residuals that are not noise.
+const MISFIT: f64 = 1e-3;
+/// What the ionosphere moves code and phase of one satellite apart by, one deviation \[m/s\]: twice 0.6 TECU a minute on L1. Provenance: ours.
+const DIVERGENCE_MPS: f64 = 0.003;
+/// Satellites with an unbroken phase below which nothing stands any longer: as many as unknowns, and one.
+const COMMON: usize = 5;
+/// Those that say whether the shift fits.
+const CHECKED: usize = 6;
+/// Most that are left out.
+const LEFT_OUT: usize = 2;
+const SLOTS: usize = 100 * Constellation::ALL.len();
+const ONE: usize = 0;
+
+/// A satellite of a solution, as it is compared.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Compared {
+    /// Which.
+    pub satellite: SatelliteId,
+    /// Unit vector from the receiver to it, east-north-up.
+    pub unit: Vector3<f64>,
+    /// 1 / sigma² of its code \[1/m²\].
+    pub weight: f64,
+}
+
+/// Code less phase of one satellite, as long as its phase is unbroken.
+#[derive(Debug, Clone, Copy)]
+struct Arc {
+    seen: Option<GpsTime>,
+    /// Of which measurements.
+    track: u32,
+    less_phase_m: f64,
+    /// The same at the time of the references, where codes that nothing leads off had put it; NaN without one.
+    reference_m: f64,
+}
+
+const NOTHING: Arc = Arc { seen: None, track: 0, less_phase_m: f64::NAN, reference_m: f64::NAN };
+
+/// The codes of one receiver against their phases, epoch after epoch in time. No heap.
+#[derive(Debug, Clone)]
+pub struct CodesAgainstPhases {
+    arcs: [Arc; SLOTS],
+    /// Time of the references.
+    since: Option<GpsTime>,
+    /// Where the codes lead the position, as long as they do.
+    standing: Option<Vector3<f64>>,
+}
+
+impl Default for CodesAgainstPhases {
+    fn default() -> Self {
+        Self { arcs: [NOTHING; SLOTS], since: None, standing: None }
+    }
+}
+
+impl CodesAgainstPhases {
+    /// A satellite that has code and phase at an epoch: code less phase \[m\], of which measurements, and whether the receiver flags a loss of
+    /// lock. All of an epoch before it is judged.
+    pub fn hear(&mut self, time: GpsTime, satellite: SatelliteId, less_phase_m: f64, track: u32, lost: bool) {
+        let Some(arc) = self.arcs.get_mut(slot(satellite)) else { return };
+        let unbroken = !lost && track == arc.track && arc.seen.is_some_and(|seen| unbroken(time, seen));
+        let reference_m = if unbroken { arc.reference_m } else { f64::NAN };
+        *arc = Arc { seen: less_phase_m.is_finite().then_some(time), track, less_phase_m, reference_m };
+    }
+
+    /// Judge an epoch by the satellites of its solution: where the codes lead the position \[m, east, north, up\], `None` where nothing says
+    /// that they do.
+    pub fn judge(&mut self, time: GpsTime, used: impl Iterator<Item = Compared>) -> Option<Vector3<f64>> {
+        let age_s = self.since.map_or(f64::INFINITY, |since| time.seconds_since(since));
+        let kept = self.arcs.iter().filter(|a| a.reference_m.is_finite() && a.seen.is_some_and(|seen| unbroken(time, seen)));
+        if kept.count() < COMMON || !(age_s >= 0.0) {
+            self.standing = None;
+            self.renew(time);
+            return None;
+        }
+        let mut rows = [Row::default(); MOST_RANGES];
+        let mut seen = [None; MOST_RANGES];
+        let mut n = 0;
+        let wander = DIVERGENCE_MPS * age_s;
+        for (c, (row, place)) in used.zip(rows.iter_mut().zip(&mut seen)) {
+            let arc = self.arcs.get(slot(c.satellite)).filter(|a| a.seen == Some(time)).copied().unwrap_or(NOTHING);
+            // Two codes have the noise of one twice.
+            let weight = if arc.reference_m.is_finite() { 1.0 / (2.0 / c.weight + wander * wander) } else { 0.0 };
+            *row = Row { unit: c.unit, weight, clock: ONE, residual: if weight > 0.0 { arc.less_phase_m - arc.reference_m } else { 0.0 } };
+            *place = Some(c);
+            n += 1;
+        }
+        if let Some((shift, covariance)) = shift(&mut rows[..n]) {
+            self.standing = beyond(&shift, &covariance).then_some(shift);
+        }
+        if age_s >= RENEWED_S {
+            let led = self.standing.unwrap_or_default();
+            self.renew(time);
+            self.correct(&led, seen.iter().take(n).flatten());
+        }
+        self.standing
+    }
+
+    /// References of all that is heard now.
+    fn renew(&mut self, time: GpsTime) {
+        self.since = Some(time);
+        for arc in &mut self.arcs {
+            arc.reference_m = if arc.seen == Some(time) { arc.less_phase_m } else { f64::NAN };
+        }
+    }
+
+    /// Put the references where codes that nothing leads off had been: a satellite without a direction has none.
+    fn correct<'a>(&mut self, led: &Vector3<f64>, used: impl Iterator<Item = &'a Compared>) {
+        if *led == Vector3::zeros() {
+            return;
+        }
+        let mut references = [f64::NAN; SLOTS];
+        for c in used {
+            if let (Some(reference), Some(arc)) = (references.get_mut(slot(c.satellite)), self.arcs.get(slot(c.satellite))) {
+                *reference = arc.reference_m + c.unit.dot(led);
+            }
+        }
+        for (arc, reference) in self.arcs.iter_mut().zip(references) {
+            arc.reference_m = reference;
+        }
+    }
+}
+
+fn slot(satellite: SatelliteId) -> usize {
+    satellite.constellation.index() * 100 + usize::from(satellite.number)
+}
+
+fn unbroken(time: GpsTime, seen: GpsTime) -> bool {
+    (0.0..=LONGEST_GAP_S).contains(&time.seconds_since(seen))
+}
+
+fn beyond(shift: &Vector3<f64>, covariance: &Matrix3<f64>) -> bool {
+    let deviation = covariance.try_inverse().map_or(f64::NAN, |inverse| shift.dot(&(inverse * shift)));
+    shift.norm() > LEAST_M && chi_square_tail(3.0, deviation) < RISK
+}
+
+/// The shift that fits, with its covariance: those that do not fit are left out, the one first without which the others fit best.
+fn shift(rows: &mut [Row]) -> Option<(Vector3<f64>, Matrix3<f64>)> {
+    for _ in 0..LEFT_OUT {
+        let whole = Fit::of(rows)?;
+        if whole.fits() {
+            return Some((whole.shift, whole.covariance));
+        }
+        let mut best: Option<(usize, f64)> = None;
+        for k in 0..rows.len() {
+            let weight = core::mem::replace(&mut rows[k].weight, 0.0);
+            if let Some(fit) = Fit::of(rows).filter(|f| weight > 0.0 && best.is_none_or(|(_, least)| f.squares < least)) {
+                best = Some((k, fit.squares));
+            }
+            rows[k].weight = weight;
+        }
+        rows[best?.0].weight = 0.0;
+    }
+    Fit::of(rows).filter(Fit::fits).map(|fit| (fit.shift, fit.covariance))
+}
+
+struct Fit {
+    shift: Vector3<f64>,
+    covariance: Matrix3<f64>,
+    squares: f64,
+    spare: usize,
+}
+
+impl Fit {
+    /// Of the rows that have a weight, where these are enough to be checked.
+    fn of(rows: &[Row]) -> Option<Self> {
+        let rows = || rows.iter().filter(|r| r.weight > 0.0).copied();
+        let n = rows().count();
+        if n < CHECKED {
+            return None;
+        }
+        let normal = Normal::new(rows()).ok()?;
+        let (shift, covariance) = (normal.step()?, normal.inverse()?);
+        let clock = normal.clock(ONE, &shift);
+        let left = |r: Row| r.residual - clock + r.unit.dot(&shift);
+        let squares = rows().map(|r| r.weight * left(r) * left(r)).sum();
+        Some(Self { shift, covariance, squares, spare: n - 4 })
+    }
+
+    fn fits(&self) -> bool {
+        chi_square_tail(self.spare as f64, self.squares) >= MISFIT
+    }
+}
+
+#[cfg(test)]
+#[path = "led_off_tests.rs"]
+mod tests;

@@ -1,0 +1,160 @@
+use super::*;
+use crate::special::float::{cos, sin};
+
+/// Azimuth and elevation of a usual sky \[deg\].
+const SKY: [(f64, f64); 9] =
+    [(20.0, 65.0), (75.0, 22.0), (110.0, 48.0), (160.0, 12.0), (205.0, 71.0), (250.0, 33.0), (290.0, 15.0), (330.0, 40.0), (355.0, 8.0)];
+const STEP_S: f64 = 30.0;
+const CODE_SIGMA_M: f64 = 2.0;
+
+fn at(seconds: f64) -> GpsTime {
+    GpsTime::default().plus_seconds(seconds)
+}
+
+fn gps(k: usize) -> SatelliteId {
+    SatelliteId { constellation: Constellation::Gps, number: k as u8 + 1 }
+}
+
+/// Satellites go on by 30 degrees of azimuth an hour.
+fn unit(k: usize, seconds: f64) -> Vector3<f64> {
+    let (azimuth, elevation) = ((SKY[k].0 + seconds / 120.0).to_radians(), SKY[k].1.to_radians());
+    Vector3::new(cos(elevation) * sin(azimuth), cos(elevation) * cos(azimuth), sin(elevation))
+}
+
+/// Noise of the code, the same in every run: a sum of four even draws, of the stated deviation.
+fn noise(state: &mut u64) -> f64 {
+    let mut even = || {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*state >> 40) as f64 / f64::from(1 << 24) - 0.5
+    };
+    (even() + even() + even() + even()) * 3.0_f64.sqrt() * CODE_SIGMA_M
+}
+
+/// What a satellite's code has beside its phase at a time, and whether a loss of lock is flagged; `None` where it is not heard.
+type Beside<'a> = &'a dyn Fn(usize, f64) -> Option<(f64, bool)>;
+
+/// What is reported of two hours at an epoch every 30 s with the first `n` satellites, beginning at `from`.
+fn reported(n: usize, beside: Beside<'_>) -> Vec<Option<Vector3<f64>>> {
+    let (mut codes, mut state) = (CodesAgainstPhases::default(), 7);
+    let epoch = |e: usize| {
+        let t = e as f64 * STEP_S;
+        let heard: Vec<usize> = (0..n).filter(|k| beside(*k, t).is_some()).collect();
+        for k in &heard {
+            let (beside, lost) = beside(*k, t).unwrap();
+            // Any ambiguity.
+            codes.hear(at(t), gps(*k), 1e6 * *k as f64 + beside + noise(&mut state), 1, lost);
+        }
+        let compared = |k: usize| Compared { satellite: gps(k), unit: unit(k, t), weight: 1.0 / (CODE_SIGMA_M * CODE_SIGMA_M) };
+        codes.judge(at(t), heard.into_iter().map(compared))
+    };
+    (0..240).map(epoch).collect()
+}
+
+/// Codes that lead the position by `way` times what a time says.
+fn led(way: Vector3<f64>, much: impl Fn(f64) -> f64) -> impl Fn(usize, f64) -> Option<(f64, bool)> {
+    move |k, t| Some((-unit(k, t).dot(&way) * much(t), false))
+}
+
+fn first(reported: &[Option<Vector3<f64>>]) -> Option<f64> {
+    Some(reported.iter().position(Option::is_some)? as f64 * STEP_S)
+}
+
+const EAST: Vector3<f64> = Vector3::new(1.0, 0.0, 0.0);
+
+#[test]
+fn codes_that_nothing_leads_off_are_not_doubted() {
+    assert_eq!(first(&reported(9, &|_, _| Some((0.0, false)))), None);
+    assert_eq!(first(&reported(6, &|_, _| Some((0.0, false)))), None);
+}
+
+#[test]
+fn a_step_is_named_at_once_to_its_end_across_renewals() {
+    let step = led(EAST, |t| if (1800.0..5400.0).contains(&t) { 100.0 } else { 0.0 });
+    let reported = reported(9, &step);
+    for (e, shift) in reported.iter().enumerate() {
+        let there = (60..180).contains(&e);
+        assert_eq!(shift.is_some(), there, "{e} {shift:?}");
+        // Six renewals each keep the noise of one epoch: sqrt(7) of two codes, and five deviations.
+        assert!(shift.is_none_or(|s| (s - 100.0 * EAST).norm() < 5.0 * 7.0_f64.sqrt() * 4.0), "{e} {shift:?}");
+    }
+}
+
+#[test]
+fn a_ramp_is_named_and_followed() {
+    let ramp = led(EAST, |t| 0.3 * (t - 1800.0).max(0.0));
+    let reported = reported(9, &ramp);
+    let from = first(&reported).unwrap();
+    // 600 s of it are 180 m; 40 m are beyond each limit of this sky.
+    assert!((1830.0..=1800.0 + 40.0 / 0.3).contains(&from), "{from}");
+    let last = reported[239].unwrap();
+    assert!(reported[from as usize / 30..].iter().all(Option::is_some) && (last.x - 0.3 * 5370.0).abs() < 60.0, "{last:?}");
+}
+
+#[test]
+fn a_ramp_below_the_limit_over_the_age_of_a_reference_is_not_seen() {
+    let slow = LEAST_M / RENEWED_S;
+    assert_eq!(first(&reported(9, &led(EAST, |t| 0.5 * slow * t))), None);
+    assert!(first(&reported(9, &led(EAST, |t| 3.0 * slow * t))).is_some());
+}
+
+#[test]
+fn milliseconds_of_the_receivers_clock_are_no_shift() {
+    let jumps = |_: usize, t: f64| Some((299_792.458 * (t / 700.0).floor(), false));
+    assert_eq!(first(&reported(9, &jumps)), None);
+    // Nor do they hide one.
+    let step = led(EAST, |t| if t >= 1800.0 { 100.0 } else { 0.0 });
+    let both = |k: usize, t: f64| Some((step(k, t)?.0 + jumps(k, t)?.0, false));
+    assert_eq!(first(&reported(9, &both)), Some(1800.0));
+}
+
+#[test]
+fn slips_of_two_satellites_are_left_out_and_those_of_more_state_nothing() {
+    for slipped in 1..=5 {
+        let slips = move |k: usize, t: f64| Some((if k < slipped && t >= 1800.0 { 60.0 + 37.0 * (k * k) as f64 } else { 0.0 }, false));
+        assert_eq!(first(&reported(9, &slips)), None, "{slipped}");
+    }
+    let step = led(EAST, |t| if t >= 1800.0 { 100.0 } else { 0.0 });
+    let both = |k: usize, t: f64| Some((step(k, t)?.0 + if k < 2 && t >= 1800.0 { 60.0 + 97.0 * k as f64 } else { 0.0 }, false));
+    assert_eq!(first(&reported(9, &both)), Some(1800.0));
+}
+
+#[test]
+fn the_divergence_of_a_storm_is_no_shift() {
+    // Twice 10 TECU of zenith within ten minutes, each way in turn, mapped to elevations (0.16 m a TECU on L1).
+    let storm = |k: usize, t: f64| {
+        let zenith = 2.0 * 0.16 * 10.0 * (t / 600.0 * core::f64::consts::PI / 2.0).sin();
+        Some((zenith / (0.1 + 0.9 * sin(SKY[k].1.to_radians())).max(0.35), false))
+    };
+    assert_eq!(first(&reported(9, &storm)), None);
+}
+
+#[test]
+fn with_five_satellites_nothing_is_named_and_what_stands_stays() {
+    assert_eq!(first(&reported(5, &led(EAST, |t| if t >= 1800.0 { 100.0 } else { 0.0 }))), None);
+    let step = led(EAST, |t| if t >= 1800.0 { 100.0 } else { 0.0 });
+    let fewer = |k: usize, t: f64| (k < 5 || t < 3600.0).then(|| step(k, t)).flatten();
+    assert!(reported(9, &fewer)[60..].iter().all(Option::is_some));
+}
+
+#[test]
+fn it_begins_anew_where_fewer_than_five_phases_are_unbroken() {
+    let step = led(EAST, |t| if t >= 1800.0 { 100.0 } else { 0.0 });
+    let lost = |k: usize, t: f64| Some((step(k, t)?.0, t == 3600.0 && k >= 4));
+    let reported = reported(9, &lost);
+    assert!(reported[60..120].iter().all(Option::is_some) && reported[120..].iter().all(Option::is_none));
+}
+
+#[test]
+fn a_gap_another_measurement_and_no_phase_break_an_arc() {
+    let mut codes = CodesAgainstPhases::default();
+    let mut epoch = |t: f64, less: f64, track: u32| {
+        (0..9).for_each(|k| codes.hear(at(t), gps(k), less * unit(k, t).x, track, false));
+        codes.judge(at(t), (0..9).map(|k| Compared { satellite: gps(k), unit: unit(k, t), weight: 1.0 })).is_some()
+    };
+    assert!(!epoch(0.0, 0.0, 1) && epoch(60.0, -100.0, 1));
+    assert!(!epoch(121.0, 0.0, 1) && epoch(122.0, 100.0, 1));
+    assert!(!epoch(123.0, 100.0, 2) && epoch(124.0, 0.0, 2));
+    assert!(!epoch(125.0, f64::NAN, 2) && !epoch(126.0, 200.0, 2) && epoch(127.0, 0.0, 2));
+    // Time that runs backwards.
+    assert!(!epoch(100.0, 100.0, 2));
+}
