@@ -66,5 +66,5 @@ def test_a_recording_is_what_the_caller_states(tmp_path: Path, stated: Operation
 
 
 def test_an_operation_that_is_none_is_refused_with_those_that_are(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="en-route or approach or ground"):
+    with pytest.raises(InputError, match="en-route, approach, ground"):
         navbound.analyze(recording(tmp_path), sigma_m=5.0, operation="taxi")
