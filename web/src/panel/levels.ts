@@ -21,7 +21,7 @@ function provenance(level: Level, field: string): string {
 }
 
 function required(value: number | null, level: Level, field: string, show: (v: number) => string): string {
-    return value === null ? "nothing asked" : `asked: ≤ ${show(value)}${provenance(level, field)}`;
+    return value === null ? "nothing required" : `required: ≤ ${show(value)}${provenance(level, field)}`;
 }
 
 function limitsProvenance(level: Level): string {
@@ -85,7 +85,7 @@ function integrityRows(): Row[] {
             cell: (r) => ({ key: "n_mi_epochs", value: r.n_mi_epochs, text: `${r.n_mi_epochs > 0 ? "▲ " : ""}${count(r.n_mi_epochs)}`, more: events(r.n_mi_events, r.n_mi_over_tta, r.longest_mi_s, r.level.tta_s), ...(r.n_mi_epochs > 0 ? { tone: "caution" as const } : {}) }),
         },
         { head: "Time to alert", cell: ({ level }) => ({ key: "tta_s", value: level.tta_s, text: `${duration(level.tta_s)}${provenance(level, "tta_s")}` }) },
-        { head: "Integrity risk asked", cell: ({ level }) => ({ key: "integrity_risk", value: level.integrity_risk, text: level.integrity_risk === null ? NONE : `${risk(level.integrity_risk)} per ${level.integrity_per ?? "exposure"}${provenance(level, "integrity_risk")}`, more: "too small to be measured by counting" }) },
+        { head: "Integrity risk required", cell: ({ level }) => ({ key: "integrity_risk", value: level.integrity_risk, text: level.integrity_risk === null ? NONE : `${risk(level.integrity_risk)} per ${level.integrity_per ?? "exposure"}${provenance(level, "integrity_risk")}`, more: "too small to be measured by counting" }) },
     ];
 }
 

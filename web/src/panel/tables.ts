@@ -92,7 +92,7 @@ export function alertLimits(payload: Payload): HTMLElement | null {
         columns: [
             text("Phase", "phase"), { head: "HAL", key: "hal_m", of: (p) => p.hal_m, show: (p) => limit(p, p.hal_m) }, number("HPL, largest", "hpl_max_m", metres), number("for all faults together", "hpl_multi_max_m", metres),
             number("Within HAL", "share_available", share), number("HPE, largest", "hpe_max_m", metres), number("Epochs with HPE above HPL", "n_misleading", count),
-            number("Accuracy 95 %, largest", "accuracy_max_m", metres), { head: "Accuracy asked", key: "accuracy_limit_m", of: (p) => p.accuracy_limit_m, show: (p) => limit(p, p.accuracy_limit_m) }, number("Epochs", "n_epochs", count),
+            number("Accuracy 95 %, largest", "accuracy_max_m", metres), { head: "Accuracy required", key: "accuracy_limit_m", of: (p) => p.accuracy_limit_m, show: (p) => limit(p, p.accuracy_limit_m) }, number("Epochs", "n_epochs", count),
         ],
     });
 }
