@@ -2,51 +2,22 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import navbound
+from led_off_station import NAVIGATION, OBSERVATIONS
+from led_off_station import led_off as station_led_off
 from navbound import gnss
 
-EXAMPLES = Path(__file__).parents[1] / "examples" / "data"
-OBSERVATIONS, NAVIGATION = EXAMPLES / "station.rnx", EXAMPLES / "broadcast.rnx"
 SECOND_NS = 1_000_000_000
-ORBIT_M = 2.2e7
-"""About the distance of a satellite: the way to one from a place 5 km off is longer by 0.6 m than its tangent plane says. [m]"""
 
 
-def led_off(folder: Path, letter: str, east_m: float, *, from_epoch: int = 0, until_epoch: int = 10**9) -> Path:
-    """The example's station with every range of a constellation as it would be `east_m` east."""
-    observations = gnss.read_observations(OBSERVATIONS)
-    ranges = gnss.solve(observations, gnss.read_navigation([NAVIGATION]), systems="GE", keep_ranges=True, mask_rad=0.0).ranges
-    assert ranges is not None
-    sights = {(t, sv): (az, el) for t, sv, az, el in ranges.select("time_ns", "sv", "az_rad", "el_rad").iter_rows()}
-    lines, epoch, body = [], -1, False
-    for line in OBSERVATIONS.read_text(encoding="ascii").splitlines():
-        changed = line
-        if body and line.startswith(">"):
-            epoch += 1
-        elif body and line.startswith(letter) and from_epoch <= epoch < until_epoch:
-            azimuth, elevation = sights.get((int(observations.time_ns[epoch]), line[:3]), (math.nan, math.nan))
-            along_m = east_m * math.sin(azimuth) * math.cos(elevation)
-            changed = moved(line, -along_m + (east_m**2 - along_m**2) / (2.0 * ORBIT_M))
-        body |= "END OF HEADER" in line
-        lines.append(changed)
-    path = folder / "station.rnx"
-    path.write_text("\n".join(lines) + "\n", encoding="ascii")
-    return path
-
-
-def moved(line: str, by_m: float) -> str:
-    """Every pseudorange of a satellite's line, longer; nothing where its direction is not known."""
-    if math.isnan(by_m):
-        return line
-    fields = [line[at : at + 16] for at in range(3, len(line), 16)]
-    is_range = [bool(f[:14].strip()) and 1.5e7 < float(f[:14]) < 4.5e7 for f in fields]
-    return line[:3] + "".join(f"{float(f[:14]) + by_m:14.3f}{f[14:]}" if r else f for f, r in zip(fields, is_range, strict=True))
+def led_off(folder: Path, letter: str, way_m: float, *, from_epoch: int = 0, until_epoch: int = 10**9) -> Path:
+    """The station with every range of a constellation as it would be so far east."""
+    return station_led_off(folder, lambda epoch, of: way_m if of == letter and from_epoch <= epoch < until_epoch else 0.0)
 
 
 @pytest.mark.parametrize("letter", ["G", "E"])

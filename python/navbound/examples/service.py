@@ -208,7 +208,10 @@ def _mapped(el_rad: float) -> float:
 
 
 def _points(band: int) -> Points:
-    """Grid points of a band in the order of its mask (RTCA DO-229, table of bands; standard); of the polar ones the northern rows."""
+    """Grid points of a band in the order of its mask (RTCA DO-229, table of bands; standard); of the polar ones the northern rows.
+
+    Written once more than in the reader, as the parity is: a test compares what is sent with the table.
+    """
     if band == 9:
         rows = ((60, 5, 72), (65, 10, 36), (70, 10, 36), (75, 10, 36), (85, 30, 12))
         return [(lat, -180 + step * k) for lat, step, n in rows for k in range(n)]

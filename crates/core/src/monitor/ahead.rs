@@ -106,20 +106,8 @@ impl Ahead {
 #[cfg(test)]
 mod tests {
     use super::super::motion::sea_level;
+    use super::super::motion::tests::LIMITS;
     use super::*;
-
-    const LIMITS: Limits = Limits {
-        max_speed_mps: 400.0,
-        speed_factor: 1.25,
-        speed_margin_mps: 25.0,
-        latency_s: 10.0,
-        fix_latency_s: 1.0,
-        noise_m: 100.0,
-        moving_mps: 15.0,
-        stale_after_s: 2.0,
-        settle_s: 30.0,
-        period_s: 0.0,
-    };
 
     fn report(time_s: f64, north_m: f64, speed_mps: f64, dated: bool) -> Report {
         let time = GpsTime::from_nanoseconds((time_s * 1e9) as i64);

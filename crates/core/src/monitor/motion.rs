@@ -484,10 +484,11 @@ fn place(report: &Report) -> Place {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    const LIMITS: Limits = Limits {
+    /// As tables and live have them.
+    pub(in crate::monitor) const LIMITS: Limits = Limits {
         max_speed_mps: 400.0,
         speed_factor: 1.25,
         speed_margin_mps: 25.0,
