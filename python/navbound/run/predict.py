@@ -291,7 +291,8 @@ def _unhealthy(request: Request, sky: Satellites) -> list[str]:
 def _assumptions(request: Request, unhealthy: list[str], start_ns: int | None, notes: Sequence[str]) -> list[str]:
     dated = "Orbits of no date: times count from their reference instant." if start_ns is None else "Orbits of the files at those times."
     return [
-        f"{dated} {'Unhealthy by the file and not used: ' + ', '.join(unhealthy) + '.' if unhealthy else 'None is called unhealthy.'}",
+        # Those that are have a note of their file.
+        dated if unhealthy else f"{dated} None is called unhealthy.",
         *notes,
         f"Satellites are tracked above {math.degrees(request.mask_rad):g}°. Terrain, bank and interference are not modelled.",
         *entry(Place, "kind", request.kind).words(request.model),
