@@ -101,6 +101,7 @@ impl Track {
         for each in self.motion.way.marks {
             to.option(each, mark);
         }
+        to.option(self.motion.way.behind, |to, since| to.i64(since.nanoseconds()));
         let ahead = &self.motion.ahead;
         to.option(ahead.last, |to, (time, speed_mps)| {
             to.i64(time.nanoseconds());
@@ -110,6 +111,7 @@ impl Track {
         for each in ahead.places {
             to.option(each, reached);
         }
+        to.flag(ahead.ahead);
         to.option(self.motion.speed.reported, |to, (time, speed_mps)| {
             to.i64(time.nanoseconds());
             to.f64(speed_mps);
@@ -161,11 +163,13 @@ impl Track {
         for each in &mut way.marks {
             *each = from.option(read_mark)?;
         }
+        way.behind = from.option(Reader::i64)?.map(GpsTime::from_nanoseconds);
         let last_speed = from.option(|from| Ok((GpsTime::from_nanoseconds(from.i64()?), from.f64()?)))?;
         let mut ahead = Ahead { last: last_speed, reported_m: from.f64()?, ..Ahead::default() };
         for each in &mut ahead.places {
             *each = from.option(read_reached)?;
         }
+        ahead.ahead = from.flag()?;
         let reported = from.option(|from| Ok((GpsTime::from_nanoseconds(from.i64()?), from.f64()?)))?;
         let motion = Motion { last: last_different, anchor, jumped, gone, height, way, ahead, speed: LastSpeed { reported } };
         let place = |from: &mut Reader<'_>| {

@@ -237,8 +237,8 @@ impl Navigation {
         model.map(|k: Klobuchar| (k.alpha, k.beta))
     }
     /// Kepler orbits of a constellation at an instant, from each satellite's nearest record: names, seven elements a row, ages [s]. One whose
-    /// nearest record says that it is unhealthy is left out, unless those are requested too.
-    fn orbits<'py>(&self, py: Python<'py>, system: usize, time_ns: i64, unhealthy: bool) -> PyResult<Kepler<'py>> {
+    /// nearest record promises nothing is left out, unless those are requested too.
+    fn orbits<'py>(&self, py: Python<'py>, system: usize, time_ns: i64, unpromised: bool) -> PyResult<Kepler<'py>> {
         let time = GpsTime::from_nanoseconds(time_ns);
         let age = |e: &Ephemeris| time.seconds_since(e.orbit_time);
         let mut nearest: BTreeMap<String, &Ephemeris> = BTreeMap::new();
@@ -249,7 +249,7 @@ impl Navigation {
                 *slot = e;
             }
         }
-        nearest.retain(|_, e| unhealthy || e.healthy(Carrier::L1));
+        nearest.retain(|_, e| unpromised || e.is_promised());
         let (mut rows, mut ages) = (Vec::with_capacity(7 * nearest.len()), Vec::with_capacity(nearest.len()));
         for e in nearest.values() {
             let el = mean_elements(e).moved(age(e)).map_err(|e| input_error(e, None))?;
@@ -271,6 +271,7 @@ impl Navigation {
         d.set_item("issue", e.iter().map(|e| i64::from(e.issue_orbit)).collect::<Vec<_>>().into_pyarray(py))?;
         d.set_item("health", e.iter().map(|e| i64::from(e.health.word)).collect::<Vec<_>>().into_pyarray(py))?;
         d.set_item("is_healthy", e.iter().map(|e| e.healthy(Carrier::L1)).collect::<Vec<_>>().into_pyarray(py))?;
+        d.set_item("is_promised", e.iter().map(Ephemeris::is_promised).collect::<Vec<_>>().into_pyarray(py))?;
         for (name, value) in ELEMENTS {
             d.set_item(name, e.iter().map(value).collect::<Vec<_>>().into_pyarray(py))?;
         }
@@ -319,6 +320,7 @@ fn solve_positions<'py>(
     let solved = py.detach(|| positions(&observations.0, &navigation.records, precise.map(PreciseOrbits::tables), &job));
     let d = table(py, &solved, errors.name)?;
     d.set_item("smoothed_share", solved.smoothed_share)?;
+    d.set_item("n_compared", solved.n_compared)?;
     d.set_item("ionosphere", model_name(&model))?;
     d.set_item("ranges", if keep_ranges { Some(kept_ranges(py, &solved)?) } else { None })?;
     d.set_item("heard", if keep_ranges { Some(heard(py, &solved)?) } else { None })?;

@@ -13,6 +13,7 @@ from navbound.errors import FormatError, InputError, NotFoundError
 from navbound.storage import packed
 from navbound.table.arguments import checked, checked_fields
 from navbound.table.arrays import flatten
+from navbound.time import utc_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -124,7 +125,8 @@ def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bo
         GPS: 24 slots of the standard positioning service's performance standard; expanded: the 27 with its slots B1, D2 and F2 split in
         two. Galileo: 24 in medium orbits (Walker 24/3/1).
         BeiDou-3: 24 likewise, three inclined geosynchronous, three geostationary. Join them with ``+``. Anything else is the path of an
-        almanac, YUMA or SEM, or of a RINEX navigation file: the satellites with a record within a day, all of which say that it is healthy.
+        almanac, YUMA or SEM, or of a RINEX navigation file: the satellites with a record within a day, all of which call every signal
+        that they speak of healthy and predict an accuracy.
     near_ns : int, optional
         A GPS time within ten years of the almanac. Its week has ten bits and may have rolled over: without a time near it
         ``reference_ns`` is None unless the file holds a full week. [ns]
@@ -207,32 +209,44 @@ def _broadcast(content: bytes, path: Path, near_ns: int | None, *, unhealthy: bo
     reference = (first + last) // 2 if near_ns is None else near_ns
     # Geostationary satellites of BeiDou count from a tilted frame, which plain elements do not know.
     tilted = {s for s, m in zip(records["satellite"], records["message"], strict=True) if m == "D2"}
-    called = _called_unhealthy(records, reference)
+    called = _unpromised(records, reference)
+    far: list[str] = []
     names: list[str] = []
     indices: list[int] = []
     rows: list[NDArray[np.float64]] = []
     for index in range(len(CONSTELLATIONS)):
-        for name, row, age in zip(*navigation.orbits(index, reference, unhealthy=True), strict=True):
-            left_out = name in tilted or (name in called and not unhealthy)
-            if abs(age) <= BROADCAST_AGE_S and not left_out:
+        for name, row, age in zip(*navigation.orbits(index, reference, unpromised=True), strict=True):
+            if name in tilted or (name in called and not unhealthy):
+                continue
+            if abs(age) > BROADCAST_AGE_S:
+                far.append(name)
+            else:
                 names.append(name)
                 indices.append(index)
                 rows.append(row)
     if not names:
-        raise InputError("near_ns", reference, "ns", f"a time within a day of the file's records, [{first}, {last}]")
+        near = f"a record within a day that promises a satellite; there are records from {utc_text(first)} to {utc_text(last)} UTC"
+        if near_ns is None:
+            raise FormatError(path, f"the middle of its records, {utc_text(reference)} UTC, has not {near}: state another time")
+        raise InputError("near_ns", reference, "ns", f"a time with {near}")
     axis, eccentricity, inclination, node, perigee, anomaly, node_rate = np.ascontiguousarray(np.stack(rows).T)
     of = np.array(indices, dtype=np.int64)
-    notes = () if unhealthy or not called else (f"{path.name}: left out, as records within a day call them unhealthy: {_listed(called)}.",)
-    return Orbits(tuple(names), of, axis, eccentricity, inclination, node, perigee, anomaly, node_rate, reference, notes)
+    notes = []
+    if called and not unhealthy:
+        reason = "records within a day call a signal of theirs unhealthy or predict no accuracy"
+        notes.append(f"{path.name}: left out, as {reason}: {_listed(called)}.")
+    if far:
+        notes.append(f"{path.name}: left out, as all their records are more than a day from {utc_text(reference)} UTC: {', '.join(far)}.")
+    return Orbits(tuple(names), of, axis, eccentricity, inclination, node, perigee, anomaly, node_rate, reference, tuple(notes))
 
 
-def _called_unhealthy(records: dict[str, Any], time_ns: int) -> dict[str, tuple[int, int]]:
-    """Satellites of which a record within a day of a time says that they are unhealthy: how many do, of how many."""
+def _unpromised(records: dict[str, Any], time_ns: int) -> dict[str, tuple[int, int]]:
+    """Satellites that a record within a day of a time does not promise: how many do not, of how many."""
     near = np.abs(records["orbit_time_ns"] - time_ns) <= BROADCAST_AGE_S * 1e9
     counts: dict[str, tuple[int, int]] = {}
-    for name, healthy in zip(np.asarray(records["satellite"])[near].tolist(), records["is_healthy"][near].tolist(), strict=True):
-        n_unhealthy, n = counts.get(name, (0, 0))
-        counts[name] = (n_unhealthy + (not healthy), n + 1)
+    for name, promised in zip(np.asarray(records["satellite"])[near].tolist(), records["is_promised"][near].tolist(), strict=True):
+        n_without, n = counts.get(name, (0, 0))
+        counts[name] = (n_without + (not promised), n + 1)
     return {name: count for name, count in sorted(counts.items()) if count[0]}
 
 

@@ -158,9 +158,9 @@ class Navigation:
     def records(self) -> pl.DataFrame:
         """Keplerian records, one a row.
 
-        ``satellite``, ``message``, ``orbit_time_ns``, ``clock_time_ns``, ``issue``, ``health``, ``is_healthy``, ``accuracy_m``, ``clock_s``
-        with drift
-        [s/s] and its rate [1/s], elements [sqrt(m), rad, rad/s, m], ``group_delay_first_s``, ``group_delay_second_s``, ``fit_interval_s``.
+        ``satellite``, ``message``, ``orbit_time_ns``, ``clock_time_ns``, ``issue``, ``health``, ``is_healthy`` (on L1), ``is_promised`` (on
+        every signal that the record speaks of, with a predicted accuracy), ``accuracy_m``, ``clock_s`` with drift [s/s] and its rate [1/s],
+        elements [sqrt(m), rad, rad/s, m], ``group_delay_first_s``, ``group_delay_second_s``, ``fit_interval_s``.
         """
         return pl.DataFrame(self._core.records())
 
@@ -173,7 +173,7 @@ class Navigation:
     def orbits(self, system: str, time_ns: int) -> Orbits:
         """Kepler orbits of a constellation from each satellite's nearest record, without harmonics: for the geometry of a day.
 
-        A satellite whose nearest record says that it is unhealthy is left out.
+        A satellite whose nearest record says that it is unhealthy, or predicts no accuracy, is left out.
 
         Parameters
         ----------
@@ -187,7 +187,7 @@ class Navigation:
         InputError
             An unknown system.
         """
-        names, rows, _ = self._core.orbits(_system_index(system), time_ns, unhealthy=False)
+        names, rows, _ = self._core.orbits(_system_index(system), time_ns, unpromised=False)
         a, e, i, node, perigee, anomaly, rate = (np.ascontiguousarray(rows[:, k]) for k in range(7))
         index = np.full(len(names), _system_index(system), dtype=np.int64)
         return Orbits(tuple(names), index, a, e, i, node, perigee, anomaly, rate, time_ns)
@@ -195,7 +195,7 @@ class Navigation:
     @checked
     def nearest_age_s(self, system: str, time_ns: int) -> float:
         """How far the nearest record of a healthy satellite of a constellation is from a GPS time [s]; infinite without one."""
-        _, _, ages = self._core.orbits(_system_index(system), time_ns, unhealthy=False)
+        _, _, ages = self._core.orbits(_system_index(system), time_ns, unpromised=False)
         return min((abs(age) for age in ages), default=np.inf)
 
 

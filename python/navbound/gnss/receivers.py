@@ -241,6 +241,7 @@ def solve(
     used = used_satellites(positions.pop("used"))
     unused, codes, weights = positions.pop("unused"), positions.pop("codes"), positions.pop("weights")
     share, model = positions.pop("smoothed_share"), positions.pop("ionosphere")
+    n_compared = positions.pop("n_compared")
     name = track or observations.marker or observations.path.name
     columns = {"track": [name] * observations.n_epochs, "time_ns": observations.time_ns, **positions}
     epochs = pl.DataFrame(columns).with_columns(pl.col("reason", "reason_id").replace({"": None}))
@@ -257,9 +258,15 @@ def solve(
         "troposphere": "Saastamoinen, standard atmosphere, 50 % humidity; mapping of DO-229",
         "weights": weights if weights != "scaled" else f"calibrated-2020 times {range_factor:g} (ranges), {shared_factor:g} (shared)",
         "residual test": f"chi-square, false alarm {false_alarm:g} an epoch",
+        "codes led off": compared_words(n_compared, observations.n_epochs),
     }
     ranges = None if kept is None else _with_times(kept, observations.time_ns)
     return Positions(epochs, unused, codes, models, ranges, used, _heard(heard, ranges, name, observations.time_ns))
+
+
+def compared_words(n_compared: int, n_epochs: int) -> str:
+    """At how many epochs codes were compared with their phases: at the others nothing shows that all of them are led off together."""
+    return f"codes compared with carrier phases at {n_compared} of {n_epochs} epochs; at the others a lead of all codes is not seen"
 
 
 def _ionosphere_words(name: str, activity_sfu: float) -> str:

@@ -12,7 +12,7 @@ from navbound.araim.settings import ErrorModel, Support, error_model, stated
 from navbound.errors import InputError
 from navbound.gnss.files import Navigation, Observations
 from navbound.gnss.monitor_fit import Fit, fit_of
-from navbound.gnss.receivers import SYSTEMS, signal_words, unused_words, used_satellites, with_errors
+from navbound.gnss.receivers import SYSTEMS, compared_words, signal_words, unused_words, used_satellites, with_errors
 from navbound.status import sentences
 
 if TYPE_CHECKING:
@@ -104,6 +104,7 @@ def watched(
         "smoothing": "none" if share is None else f"divergence-free, {100 * share:.1f} % of the pseudoranges",
         "satellites not used (satellite-epochs)": unused_words(recorded["unused"]),
         "fit of the error model": fit.words,
+        "codes led off": compared_words(recorded["n_compared"], observations.n_epochs),
     }
     return Watched(epochs if truth_ecef_m is None else with_errors(epochs, truth_ecef_m), models, recorded["unused"], used, fit)
 

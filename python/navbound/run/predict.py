@@ -137,7 +137,7 @@ def predict(request: Request, places: Sequence[PredictedPlace], *, command: str 
     orbits = sky.orbits.without(list(dict.fromkeys(request.without)))
     start_ns = request.times.start_ns if request.times.start_ns is not None else sky.orbits.reference_ns
     when = _Instants(request.times.offsets_s(), request.times.step_s, start_ns)
-    unhealthy = _unhealthy(request, sky)
+    unhealthy = _unhealthy(request, sky.orbits.satellite)
     lines: list[PredictedLine] = []
     holes: list[Hole] = []
     for each in places:
@@ -173,12 +173,18 @@ def predict(request: Request, places: Sequence[PredictedPlace], *, command: str 
     )
 
 
-def _sky(request: Request) -> Satellites:
-    """Satellites of the receiver's constellations, at the instants."""
+def _letters(request: Request) -> set[str]:
+    """Constellations that the receiver uses."""
     named = {letter for letter, words in gnss.SYSTEMS.items() if words.lower() in request.constellation}
     letters = named | {"G"} if request.systems is None else set(request.systems)
     if not letters or not letters <= set(gnss.SYSTEMS):
         raise InputError("systems", request.systems, domain=f"letters of {''.join(gnss.SYSTEMS)}")
+    return letters
+
+
+def _sky(request: Request) -> Satellites:
+    """Satellites of the receiver's constellations, at the instants."""
+    letters = _letters(request)
     try:
         sky = satellites(request.constellation, request.times, request.mask_rad, 0.0)
     except InputError as e:
@@ -187,7 +193,10 @@ def _sky(request: Request) -> Satellites:
         raise InputError("date", f"{utc_text(request.times.start_ns)} UTC", domain=e.domain) from e
     orbits = sky.orbits.without([name for name in sky.orbits.satellite if name[0] not in letters])
     if not orbits.satellite:
-        raise InputError("systems", "".join(sorted(letters)), domain="constellations of the orbits given")
+        there = ", ".join(sorted({name[0] for name in sky.orbits.satellite}))
+        raise InputError(
+            "systems", "".join(sorted(letters)), domain=" ".join([f"one of the orbits that may be used: {there}.", *sky.orbits.notes])
+        )
     return replace(sky, orbits=orbits)
 
 
@@ -279,13 +288,13 @@ def _holes(kind: _Kind, level_m: Floats, n_sv: NDArray[np.int64], when: _Instant
     return holes
 
 
-def _unhealthy(request: Request, sky: Satellites) -> list[str]:
-    """Satellites that an almanac or a record of the file calls unhealthy: they are not used."""
+def _unhealthy(request: Request, used: Sequence[str]) -> list[str]:
+    """Satellites of the receiver that an almanac or a record of the file does not promise: they are not used."""
     every = {
         s for name in request.constellation for s in gnss.constellation(name, near_ns=request.times.start_ns, unhealthy=True).satellite
     }
-    used = {name[0] for name in sky.orbits.satellite}
-    return sorted(name for name in every - set(sky.orbits.satellite) if name[0] in used)
+    letters = _letters(request)
+    return sorted(name for name in every - set(used) if name[0] in letters)
 
 
 def _assumptions(request: Request, unhealthy: list[str], start_ns: int | None, notes: Sequence[str]) -> list[str]:

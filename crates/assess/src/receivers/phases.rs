@@ -28,7 +28,7 @@ impl<'a> Compare<'a> {
             let codes = 0..if plans[system].is_some() { observations.codes[system].len() } else { 0 };
             codes.map(|code| own_phases(observations, system, code)).collect()
         });
-        Self { observations, plans, phases, codes: CodesAgainstPhases::default() }
+        Self { observations, plans, phases, codes: CodesAgainstPhases::new(interval_s(observations)) }
     }
 
     /// Where the codes of the next epoch lead its position, by the satellites of it; none where there is no position. All epochs in the order
@@ -36,6 +36,11 @@ impl<'a> Compare<'a> {
     pub(crate) fn next(&mut self, epoch: usize, used: Option<&[Compared]>) -> Option<Vector3<f64>> {
         self.hear(epoch);
         self.codes.judge(self.observations.time[epoch], used?.iter().copied())
+    }
+
+    /// How many epochs were compared.
+    pub(crate) const fn n_compared(&self) -> usize {
+        self.codes.n_compared()
     }
 
     fn hear(&mut self, epoch: usize) {
@@ -60,4 +65,11 @@ impl<'a> Compare<'a> {
             self.codes.hear(time, satellite, code - metres, track, slip);
         }
     }
+}
+
+/// The median time between two epochs \[s\]; 0 of fewer than two.
+fn interval_s(observations: &Observations) -> f64 {
+    let mut steps_s: Vec<f64> = observations.time.windows(2).map(|pair| pair[1].seconds_since(pair[0])).collect();
+    steps_s.sort_unstable_by(f64::total_cmp);
+    steps_s.get(steps_s.len() / 2).copied().unwrap_or(0.0)
 }

@@ -277,7 +277,7 @@ impl Plan {
         if !measured.iter().all(|m| e.healthy(m.carrier)) {
             return Err(Unused::Unhealthy);
         }
-        if !(e.accuracy_m >= 0.0) {
+        if !e.predicts_accuracy() {
             return Err(Unused::NoAccuracy);
         }
         let sent = earlier(time, first.pseudorange / SPEED_OF_LIGHT_MPS);

@@ -46,11 +46,23 @@ pub struct Ahead {
     pub reported_m: f64,
     /// The earliest first.
     pub places: [Option<Reached>; PLACES],
+    /// What was found last.
+    pub ahead: bool,
 }
 
 impl Ahead {
-    /// Whether the position of this report, at `here`, is further on than the speeds lead; an unchanged one is as old as the change.
+    /// Whether the position of this report, at `here`, is further on than the speeds lead; an unchanged one is as old as the change. A report
+    /// without a speed is as the one before it, and nothing is forgotten by it.
     pub fn is_ahead(&mut self, report: &Report, here: &EcefPosition, unchanged: bool, limits: &Limits) -> bool {
+        let since_s = self.last.map(|(time, _)| report.time.seconds_since(time));
+        if report.speed_mps.is_nan() && since_s.is_some_and(|since_s| (0.0..=GAP_S).contains(&since_s)) {
+            return self.ahead;
+        }
+        self.ahead = self.with_speed(report, here, unchanged, limits);
+        self.ahead
+    }
+
+    fn with_speed(&mut self, report: &Report, here: &EcefPosition, unchanged: bool, limits: &Limits) -> bool {
         let Some(step_m) = self.step_m(report) else {
             *self = Self::default();
             self.last = Some((report.time, report.speed_mps)).filter(|(_, speed_mps)| speed_mps.is_finite());
@@ -178,13 +190,27 @@ mod tests {
         let hold = |t: f64| if (100.0..160.0).contains(&t) { 12_400.0 } else { 124.0 * t };
         assert_eq!(ahead(400, false, hold, |_| 124.0), []);
         assert_eq!(ahead(400, false, |t| 124.0 * (t - 10.0 * f64::from(u8::from(t < 200.0))), |_| 124.0), []);
-        let unknown = |t: f64| if t == 150.0 { f64::NAN } else { 124.0 };
+        let unknown = |t: f64| if (140.0..201.0).contains(&t) { f64::NAN } else { 124.0 };
         assert_eq!(ahead(300, false, |t| 124.0 * t + if t >= 150.0 { 9_000.0 } else { 0.0 }, unknown), []);
         let mut track = Ahead::default();
         for (time_s, north_m) in [(0.0, 0.0), (60.0, 7440.0), (120.5, 90_000.0), (150.0, 93_500.0)] {
             let each = report(time_s, north_m, 124.0, false);
             assert!(!track.is_ahead(&each, &sea_level(&each).unwrap(), false, &LIMITS));
         }
+    }
+
+    /// A speed in one of sixty rows is one, and what it found stands until the next.
+    #[test]
+    fn speeds_that_are_rarely_stated_are_judged_as_well() {
+        let rarely = |each: u32| move |t: f64| if (t as u32).is_multiple_of(each) { 124.0 } else { f64::NAN };
+        for each in [5, 12, 30, 60] {
+            let led = ahead(600, false, |t| 204.0 * t, rarely(each));
+            let first = led[0];
+            assert!((20..20 + each).contains(&first), "{each} {first}");
+            assert_eq!(led, (first..600).collect::<Vec<_>>(), "{each}");
+            assert_eq!(ahead(600, false, |t| 124.0 * t, rarely(each)), []);
+        }
+        assert_eq!(ahead(600, false, |t| 204.0 * t, rarely(61)), []);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Does the position go the way that the reported speed says?
 
 use super::motion::{Limits, Report, sea_level};
+use crate::frame::EcefPosition;
 use crate::quantity::{GpsTime, OutOfDomain};
 use crate::special::float::sin;
 use core::f64::consts::PI;
@@ -54,15 +55,28 @@ pub struct Way {
     pub last: Option<(Report, Mark)>,
     /// The places before it, the earliest first.
     pub marks: [Option<Mark>; MARKS],
+    /// Since when the last position that was judged is behind.
+    pub behind: Option<GpsTime>,
 }
 
 impl Way {
-    /// For how long the positions up to this one have fallen behind the reported speed \[s\].
+    /// For how long the positions up to this one have fallen behind the reported speed \[s\]. A report without a speed is as the one before it,
+    /// and nothing is forgotten by it.
     ///
     /// # Errors
     /// [`OutOfDomain`] for a position that is no place on the Earth.
     pub fn is_behind(&mut self, report: &Report, limits: &Limits) -> Result<Option<f64>, OutOfDomain> {
         let here = sea_level(report)?;
+        let spoken = self.last.filter(|(last, _)| (0.0..=SILENCE_S).contains(&report.time.seconds_since(last.time)));
+        if spoken.is_some() && report.speed_mps.is_nan() {
+            return Ok(self.behind.map(|since| report.time.seconds_since(since)));
+        }
+        let behind_s = self.with_speed(report, &here, limits)?;
+        self.behind = behind_s.map(|behind_s| report.time.plus_seconds(-behind_s));
+        Ok(behind_s)
+    }
+
+    fn with_speed(&mut self, report: &Report, here: &EcefPosition, limits: &Limits) -> Result<Option<f64>, OutOfDomain> {
         if !(report.speed_mps > limits.moving_mps) {
             *self = Self::default();
             return Ok(None);
@@ -146,6 +160,25 @@ mod tests {
                 way.is_behind(&report, &LIMITS).unwrap().is_some()
             })
             .count()
+    }
+
+    /// A stand at 64 m/s that states its speed in one of so many seconds: what was found stands until the next speed.
+    #[test]
+    fn a_stand_is_seen_where_speeds_are_rarely_stated() {
+        for each in [1, 2, 5, 10, 12] {
+            let mut way = Way::default();
+            let behind: Vec<bool> = (0..120)
+                .map(|k| {
+                    let speed_mps = if k % each == 0 { 64.0 } else { f64::NAN };
+                    let time = GpsTime::from_nanoseconds(k * 1_000_000_000);
+                    let (lat_rad, lon_rad) = (0.8 + f64::from(k as i32) * 1e-10, 0.1);
+                    let report = Report { time, fixed: None, lat_rad, lon_rad, speed_mps, variance_m2: 4.0, height: None };
+                    way.is_behind(&report, &LIMITS).unwrap().is_some()
+                })
+                .collect();
+            let first = behind.iter().position(|b| *b).unwrap();
+            assert!(first <= 40 && behind[first..].iter().all(|b| *b), "{each} {first}");
+        }
     }
 
     /// A glider at 28 m/s and 15 degrees a second, a jet at 120 m/s and three: whatever the rows, a circle is no stand.

@@ -90,6 +90,9 @@ pub struct Ephemeris {
     pub fit_interval_s: f64,
 }
 
+/// Accuracy from which none is predicted \[m\]: the upper end of index 14. Provenance: standard.
+const LEAST_UNPREDICTED_M: f64 = 6144.0;
+
 impl Ephemeris {
     /// May be used for ranging on this carrier, as far as the satellite itself says.
     ///
@@ -110,6 +113,16 @@ impl Ephemeris {
             }
             _ => word == 0,
         }
+    }
+
+    /// Predicts its accuracy: GPS without one says 8192 m or more than 6144 m (IS-GPS-200 20.3.3.3.1.3, index 15), Galileo less than nothing.
+    pub const fn predicts_accuracy(&self) -> bool {
+        self.accuracy_m >= 0.0 && self.accuracy_m < LEAST_UNPREDICTED_M
+    }
+
+    /// May be counted on before its signals are heard: healthy on every carrier that the record speaks of, with a predicted accuracy.
+    pub const fn is_promised(&self) -> bool {
+        self.health.word == 0 && self.predicts_accuracy()
     }
 
     /// Group delay to subtract from the broadcast clock for a user of one carrier \[s\]; `None` where the message does not serve it.

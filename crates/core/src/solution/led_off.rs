@@ -5,6 +5,9 @@
 //! led off: S' P^-1 S beyond the chi-square of three at 1e-9, |S| beyond 15 m, and residuals that fit (1e-3)
 //! ```
 //!
+//! A phase that begins between two references is put where S and b of its first epoch put it, and inherits their noise: `P + I`, I grows by
+//! P m / n with m of n satellites that join.
+//!
 //! Position and motion of the receiver are in code and phase alike, and d has none of them. A receiver that moves its code by milliseconds
 //! moves b alone. Provenance: ours, of standard parts; the limits are inferred.
 
@@ -19,6 +22,10 @@ use nalgebra::{Matrix3, Vector3};
 pub const RENEWED_S: f64 = 600.0;
 /// A longer silence of a satellite ends its arc of phase \[s\], as that of smoothing.
 const LONGEST_GAP_S: f64 = 60.0;
+/// Epochs further apart are not compared \[s\]: two of them are a renewal apart.
+pub const LONGEST_INTERVAL_S: f64 = 300.0;
+/// Longest silence in intervals of the recording: a flag of lost lock is about the time since the last epoch. Derived.
+const GAP_INTERVALS: f64 = 1.5;
 /// Least shift that is said \[m\].
 pub const LEAST_M: f64 = 15.0;
 /// Risk that noise alone is beyond its deviation.
@@ -31,10 +38,11 @@ const DIVERGENCE_MPS: f64 = 0.003;
 const COMMON: usize = 5;
 /// Those that say whether the shift fits.
 const CHECKED: usize = 6;
-/// Most that are left out.
+/// Fewest that may be left out at most; of many satellites it is half of those that the fit has to spare.
 const LEFT_OUT: usize = 2;
 const SLOTS: usize = 100 * Constellation::ALL.len();
 const ONE: usize = 0;
+const UNKNOWNS: usize = 4;
 
 /// A satellite of a solution, as it is compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,29 +76,40 @@ pub struct CodesAgainstPhases {
     since: Option<GpsTime>,
     /// Where the codes lead the position, as long as they do.
     standing: Option<Vector3<f64>>,
-}
-
-impl Default for CodesAgainstPhases {
-    fn default() -> Self {
-        Self { arcs: [NOTHING; SLOTS], since: None, standing: None }
-    }
+    /// What the references have of the noise of shifts before \[m²\].
+    inherited: Matrix3<f64>,
+    longest_gap_s: f64,
+    n_compared: usize,
 }
 
 impl CodesAgainstPhases {
+    /// Of a recording with an epoch every `interval_s`.
+    #[must_use]
+    pub fn new(interval_s: f64) -> Self {
+        let longest_gap_s = LONGEST_GAP_S.max(GAP_INTERVALS * interval_s.min(LONGEST_INTERVAL_S));
+        Self { arcs: [NOTHING; SLOTS], since: None, standing: None, inherited: Matrix3::zeros(), longest_gap_s, n_compared: 0 }
+    }
+
+    /// How many epochs were compared: enough satellites with an unbroken phase, and residuals that fit.
+    #[must_use]
+    pub const fn n_compared(&self) -> usize {
+        self.n_compared
+    }
+
     /// A satellite that has code and phase at an epoch: code less phase \[m\], of which measurements, and whether the receiver flags a loss of
     /// lock. All of an epoch before it is judged.
     pub fn hear(&mut self, time: GpsTime, satellite: SatelliteId, less_phase_m: f64, track: u32, lost: bool) {
-        let Some(arc) = self.arcs.get_mut(slot(satellite)) else { return };
-        let unbroken = !lost && track == arc.track && arc.seen.is_some_and(|seen| unbroken(time, seen));
+        let Some(arc) = self.arcs.get(slot(satellite)).copied() else { return };
+        let unbroken = !lost && track == arc.track && arc.seen.is_some_and(|seen| self.unbroken(time, seen));
         let reference_m = if unbroken { arc.reference_m } else { f64::NAN };
-        *arc = Arc { seen: less_phase_m.is_finite().then_some(time), track, less_phase_m, reference_m };
+        self.arcs[slot(satellite)] = Arc { seen: less_phase_m.is_finite().then_some(time), track, less_phase_m, reference_m };
     }
 
     /// Judge an epoch by the satellites of its solution: where the codes lead the position \[m, east, north, up\], `None` where nothing says
     /// that they do.
     pub fn judge(&mut self, time: GpsTime, used: impl Iterator<Item = Compared>) -> Option<Vector3<f64>> {
         let age_s = self.since.map_or(f64::INFINITY, |since| time.seconds_since(since));
-        let kept = self.arcs.iter().filter(|a| a.reference_m.is_finite() && a.seen.is_some_and(|seen| unbroken(time, seen)));
+        let kept = self.arcs.iter().filter(|a| a.reference_m.is_finite() && a.seen.is_some_and(|seen| self.unbroken(time, seen)));
         if kept.count() < COMMON || !(age_s >= 0.0) {
             self.standing = None;
             self.renew(time);
@@ -108,20 +127,45 @@ impl CodesAgainstPhases {
             *place = Some(c);
             n += 1;
         }
-        if let Some((shift, covariance)) = shift(&mut rows[..n]) {
-            self.standing = beyond(&shift, &covariance).then_some(shift);
+        if let Some(fit) = fitting(&mut rows[..n]) {
+            self.n_compared += 1;
+            // What stands goes on until the codes have moved back, and not because references become less certain.
+            let inherited = if self.standing.is_some() { Matrix3::zeros() } else { self.inherited };
+            self.standing = beyond(&fit.shift, &(fit.covariance + inherited)).then_some(fit.shift);
+            self.join(time, &fit, seen.iter().take(n).flatten());
         }
         if age_s >= RENEWED_S {
-            let led = self.standing.unwrap_or_default();
+            let (led, inherited) = (self.standing.unwrap_or_default(), self.inherited);
             self.renew(time);
             self.correct(&led, seen.iter().take(n).flatten());
+            if self.standing.is_some() {
+                self.inherited = inherited;
+            }
         }
         self.standing
+    }
+
+    /// Give satellites whose phase began since, and has a direction, the reference that the shift of now puts theirs at. They inherit its noise:
+    /// each is one of `n` that carry it.
+    fn join<'a>(&mut self, time: GpsTime, fit: &Fit, used: impl Iterator<Item = &'a Compared>) {
+        let mut joined = 0;
+        for c in used {
+            if let Some(arc) = self.arcs.get_mut(slot(c.satellite)).filter(|a| a.seen == Some(time) && a.reference_m.is_nan()) {
+                arc.reference_m = arc.less_phase_m - fit.clock + c.unit.dot(&fit.shift);
+                joined += 1;
+            }
+        }
+        self.inherited += fit.covariance * (f64::from(joined) / (f64::from(joined) + (fit.spare + UNKNOWNS) as f64));
+    }
+
+    fn unbroken(&self, time: GpsTime, seen: GpsTime) -> bool {
+        (0.0..=self.longest_gap_s).contains(&time.seconds_since(seen))
     }
 
     /// References of all that is heard now.
     fn renew(&mut self, time: GpsTime) {
         self.since = Some(time);
+        self.inherited = Matrix3::zeros();
         for arc in &mut self.arcs {
             arc.reference_m = if arc.seen == Some(time) { arc.less_phase_m } else { f64::NAN };
         }
@@ -148,21 +192,18 @@ fn slot(satellite: SatelliteId) -> usize {
     satellite.constellation.index() * 100 + usize::from(satellite.number)
 }
 
-fn unbroken(time: GpsTime, seen: GpsTime) -> bool {
-    (0.0..=LONGEST_GAP_S).contains(&time.seconds_since(seen))
-}
-
 fn beyond(shift: &Vector3<f64>, covariance: &Matrix3<f64>) -> bool {
     let deviation = covariance.try_inverse().map_or(f64::NAN, |inverse| shift.dot(&(inverse * shift)));
     shift.norm() > LEAST_M && chi_square_tail(3.0, deviation) < RISK
 }
 
-/// The shift that fits, with its covariance: those that do not fit are left out, the one first without which the others fit best.
-fn shift(rows: &mut [Row]) -> Option<(Vector3<f64>, Matrix3<f64>)> {
-    for _ in 0..LEFT_OUT {
+/// The shift that fits: those that do not fit are left out, the one first without which the others fit best.
+fn fitting(rows: &mut [Row]) -> Option<Fit> {
+    let compared = rows.iter().filter(|row| row.weight > 0.0).count();
+    for _ in 0..LEFT_OUT.max(compared.saturating_sub(COMMON) / 2) {
         let whole = Fit::of(rows)?;
         if whole.fits() {
-            return Some((whole.shift, whole.covariance));
+            return Some(whole);
         }
         let mut best: Option<(usize, f64)> = None;
         for k in 0..rows.len() {
@@ -174,12 +215,13 @@ fn shift(rows: &mut [Row]) -> Option<(Vector3<f64>, Matrix3<f64>)> {
         }
         rows[best?.0].weight = 0.0;
     }
-    Fit::of(rows).filter(Fit::fits).map(|fit| (fit.shift, fit.covariance))
+    Fit::of(rows).filter(Fit::fits)
 }
 
 struct Fit {
     shift: Vector3<f64>,
     covariance: Matrix3<f64>,
+    clock: f64,
     squares: f64,
     spare: usize,
 }
@@ -197,7 +239,7 @@ impl Fit {
         let clock = normal.clock(ONE, &shift);
         let left = |r: Row| r.residual - clock + r.unit.dot(&shift);
         let squares = rows().map(|r| r.weight * left(r) * left(r)).sum();
-        Some(Self { shift, covariance, squares, spare: n - 4 })
+        Some(Self { shift, covariance, clock, squares, spare: n - UNKNOWNS })
     }
 
     fn fits(&self) -> bool {

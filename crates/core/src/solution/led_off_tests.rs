@@ -35,7 +35,7 @@ type Beside<'a> = &'a dyn Fn(usize, f64) -> Option<(f64, bool)>;
 
 /// What is reported of two hours at an epoch every 30 s with the first `n` satellites, beginning at `from`.
 fn reported(n: usize, beside: Beside<'_>) -> Vec<Option<Vector3<f64>>> {
-    let (mut codes, mut state) = (CodesAgainstPhases::default(), 7);
+    let (mut codes, mut state) = (CodesAgainstPhases::new(STEP_S), 7);
     let epoch = |e: usize| {
         let t = e as f64 * STEP_S;
         let heard: Vec<usize> = (0..n).filter(|k| beside(*k, t).is_some()).collect();
@@ -146,7 +146,7 @@ fn it_begins_anew_where_fewer_than_five_phases_are_unbroken() {
 
 #[test]
 fn a_gap_another_measurement_and_no_phase_break_an_arc() {
-    let mut codes = CodesAgainstPhases::default();
+    let mut codes = CodesAgainstPhases::new(1.0);
     let mut epoch = |t: f64, less: f64, track: u32| {
         (0..9).for_each(|k| codes.hear(at(t), gps(k), less * unit(k, t).x, track, false));
         codes.judge(at(t), (0..9).map(|k| Compared { satellite: gps(k), unit: unit(k, t), weight: 1.0 })).is_some()
@@ -157,4 +157,64 @@ fn a_gap_another_measurement_and_no_phase_break_an_arc() {
     assert!(!epoch(125.0, f64::NAN, 2) && !epoch(126.0, 200.0, 2) && epoch(127.0, 0.0, 2));
     // Time that runs backwards.
     assert!(!epoch(100.0, 100.0, 2));
+}
+
+/// A standing lead whose satellites lose their phase one after another, each within ten minutes.
+#[test]
+fn a_lead_stands_while_phases_are_lost_in_turn() {
+    let step = led(EAST, |t| if (1800.0..5400.0).contains(&t) { 100.0 } else { 0.0 });
+    let in_turn = |k: usize, t: f64| Some((step(k, t)?.0, (t / STEP_S) as usize % 9 == k));
+    for (e, shift) in reported(9, &in_turn).iter().enumerate() {
+        assert_eq!(shift.is_some(), (60..180).contains(&e), "{e} {shift:?}");
+    }
+}
+
+#[test]
+fn phases_that_are_lost_in_turn_lead_nothing_off() {
+    for each in [1, 2, 3] {
+        let in_turn = |k: usize, t: f64| Some((0.0, (t / STEP_S) as usize * each % 9 / each == k / each));
+        assert_eq!(first(&reported(9, &in_turn)), None, "{each}");
+    }
+}
+
+/// Fourteen satellites, four of which slip without a flag before they are led off.
+#[test]
+fn of_many_satellites_several_that_slip_are_left_out() {
+    let sky = |k: usize, t: f64| -> Vector3<f64> {
+        let mut turned = unit(k % 9, t + 5400.0 * f64::from(u8::from(k >= 9)));
+        turned.z = turned.z.max(0.1);
+        turned.normalize()
+    };
+    let (mut codes, mut state) = (CodesAgainstPhases::new(STEP_S), 7);
+    let named: Vec<bool> = (0..20)
+        .map(|e| {
+            let t = f64::from(e) * STEP_S;
+            for k in 0..14 {
+                let slip = if k < 4 && e >= 8 { 40.0 + 31.0 * (k * k) as f64 } else { 0.0 };
+                let beside = if e >= 10 { -60.0 * sky(k, t).x } else { 0.0 };
+                codes.hear(at(t), gps(k), slip + beside + noise(&mut state), 1, false);
+            }
+            let compared = |k: usize| Compared { satellite: gps(k), unit: sky(k, t), weight: 1.0 / (CODE_SIGMA_M * CODE_SIGMA_M) };
+            codes.judge(at(t), (0..14).map(compared)).is_some()
+        })
+        .collect();
+    assert_eq!(named, (0..20).map(|e| e >= 10).collect::<Vec<_>>());
+    assert_eq!(codes.n_compared(), 19);
+}
+
+/// Epochs 90 s apart, as far as their receiver flags no loss of lock; of 500 s none is compared with another.
+#[test]
+fn sparse_epochs_are_compared_by_their_own_interval() {
+    for (interval_s, compared) in [(90.0, true), (300.0, true), (500.0, false)] {
+        let mut codes = CodesAgainstPhases::new(interval_s);
+        let named: Vec<bool> = (0..6)
+            .map(|e| {
+                let t = interval_s * f64::from(e);
+                (0..9).for_each(|k| codes.hear(at(t), gps(k), if e >= 3 { -60.0 * unit(k, t).x } else { 0.0 }, 1, false));
+                codes.judge(at(t), (0..9).map(|k| Compared { satellite: gps(k), unit: unit(k, t), weight: 1.0 })).is_some()
+            })
+            .collect();
+        assert_eq!(named, (0..6).map(|e| compared && e >= 3).collect::<Vec<_>>(), "{interval_s}");
+        assert_eq!(codes.n_compared() > 0, compared);
+    }
 }
