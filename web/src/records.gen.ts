@@ -692,6 +692,8 @@ export interface Verdict {
     least_share: number;
     /** What stands in the first sentence because no data says it. */
     assumed: ("sigma_typed" | "sigma_coded" | "no_path")[];
+    /** Quantities of which the user declares that no column is to be read as them: what they say against the positions is not heard. */
+    set_aside: string[];
     /** None where no epoch has both a bound or level and a true error. */
     belief: Belief | null;
     /** Epochs of any status whose true position is known. */

@@ -15,6 +15,7 @@ from navbound import _core, status
 from navbound.errors import ConflictError, InputError
 from navbound.read.checks.established import contradicting, established
 from navbound.read.checks.stated import ALERT, CONTAINMENT, LEVEL_SIGMAS, TWO_DRMS
+from navbound.read.tables.columns import NO_COLUMN
 from navbound.read.tables.epochs import read_beside
 from navbound.records.truth import TruthDoubts
 from navbound.time import utc_text
@@ -63,6 +64,11 @@ class Truth:
     tolerance_s: float
     columns: Mapping[str, str] = field(default_factory=dict)
     place: str = ""
+
+    @property
+    def set_aside(self) -> list[str]:
+        """Quantities that no column is to be read as."""
+        return sorted(name for name, column in self.columns.items() if column == NO_COLUMN)
 
     @property
     def columns_of_estimates(self) -> Mapping[str, str]:

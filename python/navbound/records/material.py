@@ -64,6 +64,8 @@ class Material:
         Tracks with a protection level anywhere, where the epochs are in pieces.
     unread : list of str
         Columns, or words of columns, that speak of integrity by their name and are not understood.
+    set_aside : list of str
+        Quantities that the user declares no column to be read as.
     position_doubts : list of str
         Why the positions may not be what they are read as (their unit, their motion), so that nothing can be shown.
     truth_doubts : TruthDoubts
@@ -100,6 +102,7 @@ class Material:
     frames: Frames | None = None
     with_levels: frozenset[str] = frozenset()
     unread: list[str] = field(default_factory=list)
+    set_aside: list[str] = field(default_factory=list)
     position_doubts: list[str] = field(default_factory=list)
     truth_doubts: TruthDoubts = field(default_factory=TruthDoubts)
     satellites: pl.DataFrame | None = None

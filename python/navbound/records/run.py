@@ -167,6 +167,8 @@ class Verdict(Record):
     """Least share of judged epochs for "inside"."""
     assumed: list[Literal["sigma_typed", "sigma_coded", "no_path"]] = Field(default_factory=list)
     """What stands in the first sentence because no data says it."""
+    set_aside: list[str] = Field(default_factory=list)
+    """Quantities of which the user declares that no column is to be read as them: what they say against the positions is not heard."""
     belief: Belief | None = None
     """None where no epoch has both a bound or level and a true error."""
     n_truth: int = 0

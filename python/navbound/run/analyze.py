@@ -205,6 +205,7 @@ def material(
         procedures=route.flights,
         settings=context.settings_with(readings),
         unread=_unread(readings),
+        set_aside=named.set_aside,
         position_doubts=position_doubts,
         truth_doubts=truth_doubts,
         satellites=pl.concat([r.satellites for r in readings if r.satellites is not None] or [pl.DataFrame(schema=schema(HEARD))]),
@@ -299,6 +300,7 @@ def _in_pieces(file: Path, path: str | Path | None, truth: Truth, context: _Cont
         settings=context.settings_with([reading]),
         with_levels=recorded.with_levels,
         unread=reading.unread,
+        set_aside=truth.set_aside,
         position_doubts=[*reading.position_doubts, *recorded.position_doubts, *([] if other is None else other.position_doubts)],
         truth_doubts=compared.doubts,
     )

@@ -127,6 +127,7 @@ def verdict_of(
         n_stated_worse=known.doubts.n_stated_worse,
         n_stated_uncontained=known.doubts.n_stated_uncontained,
         unread=material.unread,
+        set_aside=material.set_aside,
         position_doubts=material.position_doubts,
         n_apart=facts.n_apart,
         largest_apart_m=known.doubts.neighbours.largest_m if known.doubts.neighbours is not None and facts.n_apart else None,

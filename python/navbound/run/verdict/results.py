@@ -88,7 +88,9 @@ def _assumed(verdict: Verdict, covariance: CovarianceOrigin) -> str:
         "sigma_coded": "a sigma made of a quality indicator (NACp, NIC or Rc)",
         "no_path": "no path (the circle of the position error is compared with RNP, without flight technical error)",
     }
-    return f"Assuming {' and '.join(named[each] for each in verdict.assumed)}" if verdict.assumed else ""
+    aside = [f"{', '.join(verdict.set_aside)} set aside by the user"] if verdict.set_aside else []
+    assumed = [*(named[each] for each in verdict.assumed), *aside]
+    return f"Assuming {' and '.join([*filter(None, [', '.join(assumed[:-1])]), *assumed[-1:]])}" if assumed else ""
 
 
 def _typed(covariance: CovarianceOrigin) -> str:
