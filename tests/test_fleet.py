@@ -189,6 +189,19 @@ def test_a_frozen_worker_writes_nothing_behind_its_back(server: Server, tmp_path
     require_truth(name, 60, 40, 2)
 
 
+def test_a_worker_names_keys_that_nothing_reads_once(tmp_path: Path) -> None:
+    lines = "".join(f'{{"v":1,"track":"A","time_ns":{k * 10**9},"fte_m":0,"sigma_m":5,"colour":1}}\n' for k in range(1, 5)).encode()
+    heard: list[str] = []
+    with create(str(tmp_path / "fleet"), RECORD, 1) as transport:
+        transport.came_in(0).append(_core.live_input("chunk", None, lines), 0)
+        assert transport.claim(0)
+        run = lane_run.LaneRun(transport, 0, FLEET.core(), report=lambda _: None, say=heard.append)
+        run.step()
+        run.show()
+        run.release()
+    assert heard == ["lane 0: keys that nothing reads: colour"]
+
+
 def test_a_dead_feeder_is_one_alert_and_not_one_for_each_aircraft(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A8: nothing arrives any more, heartbeats included."""
     record = RECORD | {"origin": {"kind": "live", "source": "a test", "speed": None}}

@@ -17,6 +17,7 @@ from navbound.errors import FormatError
 from navbound.live import journal
 from navbound.live.fleet.transport import UnreachableError
 from navbound.live.session import now_ns
+from navbound.live.statements import unread
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -78,6 +79,7 @@ class LaneRun:
         self.replayed = 0
         self._last, self._judged_ns, self._heard_s = b"", 0, time.monotonic()
         self.n_epochs = 0
+        self._named: set[str] = set()
         self._recover(begun)
         self._snapshot_at = self._shown_at = time.monotonic()
 
@@ -185,7 +187,10 @@ class LaneRun:
         self.show()
 
     def show(self) -> None:
-        """Show the newest states and what was counted."""
+        """Show the newest states and what was counted, and name keys that nothing reads as they come."""
+        if new := self._core.passed_over().keys() - self._named:
+            self._named |= new
+            self._say(f"lane {self.lane}: {unread(new)}")
         status: dict[str, Any] = {"lane": self.lane, "position": self.position}
         status |= {"n_tracks": self._core.n_tracks, "event_ns": self._core.event_time_ns}
         status |= {"lag_s": self._lag_s(), "heard_s": round(time.monotonic() - self._heard_s, 2), "counters": self._core.counters()}
