@@ -286,6 +286,16 @@ def test_an_age_that_is_not_understood_is_named(tmp_path: Path, added: dict[str,
     assert named in analyzed(tmp_path, [row | added for row in rows()]).summary.verdict.unread
 
 
+@pytest.mark.parametrize(("ahead_s", "reported"), [(0.0, 0), (1.9, 0), (2.5, 300), (3600.0, 300)])
+@pytest.mark.parametrize("name", ["last_position", "time_position"])
+def test_a_position_of_a_later_time_than_its_row_is_reported(tmp_path: Path, name: str, ahead_s: float, reported: int) -> None:
+    """One of the two clocks is wrong, and nothing says which."""
+    table = rows(300)
+    run = analyzed(tmp_path, [row | {name: row["time_s"] + ahead_s} for row in table])
+    assert (run.epochs["reason_id"] == "reported").sum() == reported
+    assert (run.summary.verdict.id == "inside") == (not reported)
+
+
 def test_a_time_and_a_position_cannot_be_left_out(tmp_path: Path) -> None:
     analyzed(tmp_path, rows())
     for quantity in ("time", "est_lat_rad"):

@@ -386,7 +386,12 @@ class Values:
             # Without it the row's own time serves: that makes no row malformed.
             words = f"{name}: {text}; row used without it"
             self.tally.add(DATED, words, int(at.sum()), out.filter(at)[LINE][0], str(raw.filter(at)[name][0]), kind="quiet")
-        return out.with_columns(pl.select(pl.when(reason.is_null()).then(valid)).to_series().alias(POSITION_TIME))
+        out = out.with_columns(pl.select(pl.when(reason.is_null()).then(valid)).to_series().alias(POSITION_TIME))
+        # One of the two clocks is wrong, and nothing says which.
+        ahead_s = (valid - out["time_ns"]).cast(pl.Float64) * 1e-9
+        of_row = pl.format("{} s later than its row", ahead_s.round(1))
+        wrong = pl.select(pl.when(ahead_s > statements.STALE_AFTER_S).then(of_row)).to_series()
+        return stated.with_statements(out, [(name, "invalid", statements.Stated(wrong, []))]) if wrong.count() else out
 
     def described(self) -> dict[str, str]:
         """Quantity to the column that it was read from and its unit."""
