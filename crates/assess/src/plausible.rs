@@ -7,7 +7,8 @@ mod repeats;
 
 use navbound_core::frame::EcefPosition;
 use navbound_core::monitor::ahead::Ahead;
-use navbound_core::monitor::motion::{Between, Gone, LastSpeed, repeated, sea_level, within};
+use navbound_core::monitor::motion::{Between, LastSpeed, repeated, sea_level, within};
+use navbound_core::monitor::standing::Gone;
 use navbound_core::monitor::way::Way;
 use navbound_core::quantity::{GpsTime, OutOfDomain};
 

@@ -2,9 +2,10 @@
 #![allow(clippy::unwrap_used)] // A test may stop at the first surprise, in its helpers too.
 
 use navbound_core::monitor::exposure::HourlyExposure;
-use navbound_core::monitor::motion::{Between, Finding, Gone, Limits, Motion, Report, repeated, within};
+use navbound_core::monitor::motion::{Between, Finding, Limits, Motion, Report, repeated, within};
 use navbound_core::monitor::neighbours::{Apart, Neighbours, Place, one_place};
 use navbound_core::monitor::rnp::{Chain, Counters, Settings};
+use navbound_core::monitor::standing::Gone;
 use navbound_core::monitor::state::{StateTable, is_ordered, nse_boundary};
 use navbound_core::quantity::{GpsTime, Metres, Risk};
 use navbound_core::special::tail;

@@ -6,8 +6,9 @@ use crate::output::Kind;
 use navbound_core::frame::EcefPosition;
 use navbound_core::judge::{self, Judge};
 use navbound_core::monitor::ahead::{Ahead, Reached};
-use navbound_core::monitor::motion::{Fall, Gone, LastSpeed, Motion, Owed, Report};
+use navbound_core::monitor::motion::{LastSpeed, Motion, Report};
 use navbound_core::monitor::neighbours::{Height, Neighbours, Place};
+use navbound_core::monitor::standing::{Fall, Gone, Owed};
 use navbound_core::monitor::way::{Mark, Way};
 use navbound_core::quantity::{GpsTime, Metres};
 

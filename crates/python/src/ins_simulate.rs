@@ -2,7 +2,7 @@
 
 use crate::error::input_error;
 use crate::orbits::named;
-use crate::positions::Navigation;
+use crate::receiver_files::Navigation;
 use crate::simulate::{epochs, read, refused, unreadable};
 use navbound_assess::fused::{Fused, MODES, Verdict};
 use navbound_assess::sensed::{BARO, CLOCK, DME, IMU, SATELLITES, Sensed, TRUTH, Table, VOR};

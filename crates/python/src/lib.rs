@@ -30,6 +30,7 @@ mod procedures;
 mod radionav;
 mod raim;
 mod read;
+mod receiver_files;
 mod receivers;
 mod rnp;
 mod rraim;
@@ -82,6 +83,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     radionav::register(m)?;
     orbits::register(m)?;
     path::register(m)?;
+    receiver_files::register(m)?;
     positions::register(m)?;
     procedures::register(m)?;
     simulate::register(m)?;

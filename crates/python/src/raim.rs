@@ -4,7 +4,7 @@ use crate::algorithms::levels;
 use crate::araim::{beside, promise, refused, requirement, systems, unmonitored, users, word};
 use crate::error::input_error;
 use crate::gnss::orbit;
-use crate::positions::{Navigation, Observations};
+use crate::receiver_files::{Navigation, Observations};
 use crate::status;
 use navbound_assess::outlook::{Outcome, Outlook};
 use navbound_assess::raim::{self, Row, Sights, Tested, Watched};

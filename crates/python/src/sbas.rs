@@ -2,7 +2,7 @@
 
 use crate::error::{format_error, input_error};
 use crate::fields::fields;
-use crate::positions::Navigation;
+use crate::receiver_files::Navigation;
 use crate::sbas_fields::fields;
 use navbound_assess::sbas::{self, Answer, Feed, FromTerms, Mode, Request, Settings, TermsRefused};
 use navbound_core::bound::sbas::model::Airborne;

@@ -1,7 +1,7 @@
 //! A receiver's positions with a service's corrections.
 
 use crate::error::{input_error, risk};
-use crate::positions::Observations;
+use crate::receiver_files::Observations;
 use crate::sbas::{Service, ignored, mode_code};
 use crate::status;
 use navbound_assess::sbas::positions::{self, Corrected, Fix, Used};

@@ -2,7 +2,7 @@
 
 use crate::error::input_error;
 use crate::orbits::satellite_id;
-use crate::positions::{Navigation, Observations};
+use crate::receiver_files::{Navigation, Observations};
 use navbound_core::frame::{Geodetic, LatLon};
 use navbound_core::geometry::{GALILEO, GPS, Slot};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians};

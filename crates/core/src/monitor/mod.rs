@@ -15,6 +15,7 @@ pub mod rnp;
 pub mod separation;
 mod settings;
 mod snapshot;
+pub mod standing;
 pub mod state;
 mod state_order;
 mod wait;
