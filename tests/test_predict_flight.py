@@ -19,6 +19,7 @@ from navbound.cli import flight_plan
 from navbound.errors import FormatError, InputError
 from navbound.run import directory
 from navbound.run.commands import fly
+from navbound.run.expected import flight
 from navbound.run.expected.assess import assess_prediction, compare
 from navbound.run.expected.flight import Expected, predict_flight, write
 from navbound.run.expected.setup import setup
@@ -376,7 +377,17 @@ def test_an_overconfident_prediction_is_seen(expected: Callable[[str], Expected]
     assert wrong.ratio_median == pytest.approx(0.5)
 
 
-def test_the_command_prints_a_page_and_leaves_a_folder(tmp_path: Path, navbound: Callable[..., Ended]) -> None:
+def test_the_command_prints_a_page_and_leaves_a_folder(
+    tmp_path: Path, navbound: Callable[..., Ended], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Both commands work out the same plan; how it is printed is all that differs, and takes the result of the first.
+    results: list[Expected] = []
+
+    def once(file: str, *, command: str) -> Expected:
+        results.append(results[0] if results else predict_flight(file, command=command))
+        return results[-1]
+
+    monkeypatch.setattr(flight, "predict_flight", once)
     file, out = plan(tmp_path, JAMMED), tmp_path / "out"
     ended = navbound("predict", "flight", file, "--out", out, "--json")
     assert ended.status == 0
@@ -394,6 +405,7 @@ def test_the_command_prints_a_page_and_leaves_a_folder(tmp_path: Path, navbound:
     assert shown.status == 0
     assert "RNP is kept on all 21 legs" in shown.stdout
     assert "How long does it hold" in shown.stdout
+    assert len(results) == 2
 
 
 @pytest.mark.parametrize(
