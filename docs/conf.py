@@ -8,6 +8,7 @@ import os
 import re
 import shutil
 import sys
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,7 @@ from navbound import __version__
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
+    from typer._click.core import Command as Commands
 
 ROOT = Path(__file__).parents[1]
 WORK = ROOT / "out" / "site-work"
@@ -76,23 +78,40 @@ for page in ("first-ten-minutes", "pbn-engineer", "gnss-analyst", "doctoral-stud
     (WORK / page).mkdir(parents=True)
 
 
-def printed_help(words: str) -> str:
-    """What a command says of itself, as to a file; a command that is none raises."""
+@cache
+def command_line() -> Commands:
+    """The tree of all commands: to make it for each output takes longer than to print them."""
     from navbound.cli.main import app  # noqa: PLC0415 - consoles take their width from COLUMNS when it is loaded
 
+    return typer.main.get_command(app)
+
+
+def printed(words: str) -> str:
+    """What a command prints as to a file; a command that is none raises."""
     name, *arguments = words.split()
-    printed = io.StringIO()
-    with contextlib.redirect_stdout(printed):
-        typer.main.get_command(app).main(arguments, prog_name=name, standalone_mode=False)
-    return printed.getvalue().rstrip()
+    text = io.StringIO()
+    with contextlib.redirect_stdout(text):
+        command_line().main(arguments, prog_name=name, standalone_mode=False)
+    return text.getvalue().rstrip()
 
 
 def print_all_help(app: Sphinx) -> None:
     """The page of commands has some forty outputs of `--help`: they are printed here, for starting Python so often takes half a minute."""
     for words in re.findall(r"^```{program-output} (navbound.*--help)$", (ROOT / "docs/reference/commands.md").read_text(), re.MULTILINE):
-        app.env.programoutput_cache[Command(words, working_directory=app.srcdir)] = (0, printed_help(words))
+        app.env.programoutput_cache[Command(words, working_directory=app.srcdir)] = (0, printed(words))
+
+
+def make_examples_once(app: Sphinx) -> None:
+    """Three tutorials begin with the same files, which take seconds to make: the command runs in the first one's folder alone."""
+    words, first = "navbound example --out data", WORK / "first-ten-minutes"
+    ended = Command(words, working_directory=str(first.resolve())).get_output()
+    for folder in (first, WORK / "pbn-engineer", WORK / "gnss-analyst"):
+        if folder != first:
+            shutil.copytree(first / "data", folder / "data")
+        app.env.programoutput_cache[Command(words, working_directory=str(folder.resolve()))] = ended
 
 
 def setup(app: Sphinx) -> None:
     """Called by Sphinx; the extension has its store of outputs from the same event."""
     app.connect("builder-inited", print_all_help, priority=900)
+    app.connect("builder-inited", make_examples_once, priority=900)

@@ -26,12 +26,21 @@ DATA = ROOT / "examples" / "data"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")), DATA / "README.md"]
 FILES = [file for example in examples.EXAMPLES.values() for file in example.files]
 NS = 1_000_000_000
+MAKE = "navbound example --out examples/data"
+
+
+def run(words: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, "-m", *words], capture_output=True, text=True, cwd=folder, check=False)
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """By the command of the documents, in a process of its own."""
     folder = tmp_path_factory.mktemp("made")
-    assert [file.name for file in examples.make([], folder)] == FILES
+    done = run([str(folder) if word == "examples/data" else word for word in MAKE.split()], folder)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert [Path(line).name for line in done.stdout.splitlines()[:-1]] == FILES
+    assert {path.name for path in folder.iterdir()} == set(FILES)
     return folder
 
 
@@ -234,11 +243,10 @@ def test_what_a_command_of_the_readme_takes_is_a_file_that_is_there_or_a_name_th
 
 
 @pytest.mark.parametrize("command", commands())
-def test_a_command_that_names_the_examples_runs(command: str, tmp_path: Path) -> None:
-    words = shlex.split(command)[1:]
-    if words[0] == "example":
-        words = [str(tmp_path) if word == "examples/data" else word for word in words]
-    else:
-        words = [str(ROOT / word) if word.startswith(MADE[:2]) else word for word in words]
-    done = subprocess.run([sys.executable, "-m", "navbound", *words], capture_output=True, text=True, cwd=tmp_path, check=False)
+def test_a_command_that_names_the_examples_runs(command: str, tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    if command == MAKE:
+        request.getfixturevalue("made")
+        return
+    words = [str(ROOT / word) if word.startswith(MADE[:2]) else word for word in shlex.split(command)]
+    done = run(words, tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr

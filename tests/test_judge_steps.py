@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import random
 from collections import defaultdict
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,9 +20,8 @@ from navbound.run.judge import judge
 from navbound.status import STATUSES
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
-PIECES = (1, 7, 1000)
 JUDGING = ("tse-exact", "anp-circle", "tse-vertical", "anp-cross")
 """One that bounds the error across the path, and others of each kind."""
 EVERY = [m.id for m in methods().values()]
@@ -86,12 +86,12 @@ def damaged(seed: int, n: int = 3000) -> pl.DataFrame:
 
 
 def at_once(rules: Settings, table: pl.DataFrame) -> tuple[pl.DataFrame, pl.DataFrame, rnp.Counters]:
-    return in_pieces(rules, table, table.height)
+    return in_pieces(rules, table, ())
 
 
-def in_pieces(rules: Settings, table: pl.DataFrame, rows: int) -> tuple[pl.DataFrame, pl.DataFrame, rnp.Counters]:
+def in_pieces(rules: Settings, table: pl.DataFrame, cuts: Iterable[int]) -> tuple[pl.DataFrame, pl.DataFrame, rnp.Counters]:
     judges = Judges(rules, with_levels(table))
-    judged = pl.concat([judges.judge(piece) for piece in table.iter_slices(rows)])
+    judged = pl.concat([judges.judge(table[begin:end]) for begin, end in pairwise([0, *cuts, table.height])])
     events, counters, _ = judges.decided()
     return judged, events, counters
 
@@ -152,9 +152,11 @@ def assert_same_events(events: pl.DataFrame, by_track: dict[str, list[rnp.Event]
 def test_at_once_in_pieces_and_epoch_by_epoch_are_the_same_bits(method: str) -> None:
     table, rules = damaged(5, 900), settings(method)
     whole, events, counters = at_once(rules, table)
-    assert {"normal", "unavailable"} < set(whole["alert"]), "a table in which hardly anything happens proves nothing"
-    for rows in PIECES:
-        judged, its_events, its_counters = in_pieces(rules, table, rows)
+    # At every seventh row, and before every row of the middle third.
+    middle = range(300, 600)
+    assert {"normal", "unavailable"} < set(whole["alert"][300:600]), "rows in which hardly anything happens prove nothing"
+    for cuts in (range(7, 900, 7), middle):
+        judged, its_events, its_counters = in_pieces(rules, table, cuts)
         assert_same_bits(whole, judged)
         assert_same_bits(events, its_events)
         assert its_counters == counters

@@ -19,6 +19,7 @@ from navbound.cli import flight_plan
 from navbound.errors import FormatError, InputError
 from navbound.run import directory
 from navbound.run.commands import fly
+from navbound.run.expected import flight
 from navbound.run.expected.assess import assess_prediction, compare
 from navbound.run.expected.flight import Expected, predict_flight, write
 from navbound.run.expected.setup import setup
@@ -326,7 +327,10 @@ def test_the_flight_without_errors_has_none_and_rejects_nothing(tmp_path: Path) 
 
 def test_a_prediction_is_assessed_against_flights(tmp_path: Path, expected: Callable[[str], Expected]) -> None:
     write(expected(JAMMED), tmp_path / "prediction")
-    fly("beijing-shanghai-jammed", out=tmp_path / "flight")
+    # Ten samples a second are what the prediction has; the flight with two hundred is that of the test of circles.
+    file = tmp_path / "jammed.toml"
+    file.write_text('base = "beijing-shanghai-jammed"\n[sensors]\nrate_hz = 10\n', encoding="utf-8")
+    fly(file, out=tmp_path / "flight")
     by_time = assess_prediction(tmp_path / "prediction", tmp_path / "flight")
     every = by_time.agreement[0]
     assert by_time.p_mode_agrees > 0.999
@@ -376,7 +380,17 @@ def test_an_overconfident_prediction_is_seen(expected: Callable[[str], Expected]
     assert wrong.ratio_median == pytest.approx(0.5)
 
 
-def test_the_command_prints_a_page_and_leaves_a_folder(tmp_path: Path, navbound: Callable[..., Ended]) -> None:
+def test_the_command_prints_a_page_and_leaves_a_folder(
+    tmp_path: Path, navbound: Callable[..., Ended], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Both commands work out the same plan; how it is printed is all that differs, and takes the result of the first.
+    results: list[Expected] = []
+
+    def once(file: str, *, command: str) -> Expected:
+        results.append(results[0] if results else predict_flight(file, command=command))
+        return results[-1]
+
+    monkeypatch.setattr(flight, "predict_flight", once)
     file, out = plan(tmp_path, JAMMED), tmp_path / "out"
     ended = navbound("predict", "flight", file, "--out", out, "--json")
     assert ended.status == 0
@@ -394,6 +408,7 @@ def test_the_command_prints_a_page_and_leaves_a_folder(tmp_path: Path, navbound:
     assert shown.status == 0
     assert "RNP is kept on all 21 legs" in shown.stdout
     assert "How long does it hold" in shown.stdout
+    assert len(results) == 2
 
 
 @pytest.mark.parametrize(

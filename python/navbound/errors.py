@@ -19,6 +19,9 @@ _UNSEEN = re.compile(UNSEEN)
 
 def visible(text: str) -> str:
     """Drop from a text what is not seen and changes how the rest is shown; ends of lines and tabs become blanks."""
+    if type(text) is str and text.isprintable():
+        # None of them is printable.
+        return text
     return _UNSEEN.sub(lambda match: " " if match[0] in "\n\t" else "", text)
 
 

@@ -21,12 +21,18 @@ class Record(BaseModel):
         return _shown(fields)
 
 
+_NO_TEXT = frozenset({float, int, bool, type(None)})
+
+
 def _shown(value: Any) -> Any:
     """Texts without what is not seen, in lists and mappings too; the rest as it is."""
+    if type(value) in _NO_TEXT:
+        return value
     if isinstance(value, str):
         return visible(value)
     if isinstance(value, dict):
         return {_shown(key): _shown(part) for key, part in value.items()}
     if type(value) in {list, tuple}:
-        return type(value)(_shown(part) for part in value)
+        # Long lists are of numbers.
+        return type(value)([part if type(part) in _NO_TEXT else _shown(part) for part in value])
     return value

@@ -140,15 +140,18 @@ def _route(record: ExpectedFlight, seconds: pl.DataFrame) -> dict[str, Any]:
     """The route, north up, coloured by mode; longitudes are shortened by the cosine of the middle latitude."""
     lat, lon = seconds["lat_rad"].to_list(), seconds["lon_rad"].to_list()
     # Longitudes counted from the first, so that 180 degrees is no edge.
-    east = [math.remainder(each - lon[0], math.tau) * math.cos((min(lat) + max(lat)) / 2) for each in lon]
-    wide, tall = max(max(east) - min(east), 1e-6), max(max(lat) - min(lat), 1e-6)
+    south, north = min(lat), max(lat)
+    shortened = math.cos((south + north) / 2)
+    east = [math.remainder(each - lon[0], math.tau) * shortened for each in lon]
+    west = min(east)
+    wide, tall = max(max(east) - west, 1e-6), max(north - south, 1e-6)
     edge = 40.0
     scale = min((WIDTH - 2 * edge) / wide, (MAP_HEIGHT - 2 * edge) / tall)
 
     middle = (WIDTH - wide * scale) / 2
 
     def at(k: int) -> tuple[float, float]:
-        return round(middle + (east[k] - min(east)) * scale, 1), round(MAP_HEIGHT - edge - (lat[k] - min(lat)) * scale, 1)
+        return round(middle + (east[k] - west) * scale, 1), round(MAP_HEIGHT - edge - (lat[k] - south) * scale, 1)
 
     lines = []
     for a, b, mode in _runs(seconds):
