@@ -417,7 +417,7 @@ def test_a_recording_that_was_stopped_says_so_wherever_its_journal_is_judged(tmp
 @pytest.mark.parametrize(
     "more",
     [
-        {"epu_m": 5000.0}, {"rc_m": 5000.0}, {"nic": 0}, {"nac_p": 0}, {"hpl": 5000.0}, {"HPL_M": 5000.0}, {"hpl_nm": 3.0},
+        {"epu_m": 5000.0}, {"rc_m": 5000.0}, {"nic": 0}, {"nac_p": 0}, {"nucp": 2}, {"hpl": 5000.0}, {"HPL_M": 5000.0}, {"hpl_nm": 3.0},
         {"valid": False}, {"alert": "RAIM FAIL"}, {"alarms": "fail"}, {"integrity": "LOST"}, {"fix": "NO FIX"},
         {"Status": "not_available"}, {"nav_mode": "stopped"}, {"nav_mode": "stale"}, {"hdop": 99.99},
     ],

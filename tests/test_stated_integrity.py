@@ -169,7 +169,6 @@ def test_an_alert_under_any_of_its_names_is_one(tmp_path: Path, name: str, fine:
         ("NSE", "3000", "NSE"),
         ("err_h_m", "4000", "err_h_m"),
         ("HFOM", "2000", "HFOM"),
-        ("position_source", "5", "position_source (5)"),
         ("age_s", "old", "age_s (old)"),
         ("age", "900", "age"),
         ("SSM", "1", "SSM (1)"),

@@ -615,7 +615,7 @@ export interface Belief {
 
 /** Where the covariance that the bounds rest on comes from. */
 export interface CovarianceOrigin {
-    id: "simulated" | "filter" | "solved" | "file" | "file_axes" | "epu" | "nac_p" | "containment_radius" | "typed" | "none";
+    id: "simulated" | "filter" | "solved" | "file" | "file_axes" | "epu" | "nac_p" | "nuc_p" | "containment_radius" | "typed" | "none";
     /** What the user typed. */
     sigma_m: number | null;
     own_low_m: number | null;

@@ -12,7 +12,7 @@ from navbound.table.columns import COVARIANCE
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-_JUDGED = frozenset({"sigma_e_m", "sigma_n_m", "epu_m", "rc_m", "nac_p", "nic", "hpl_m", "status", *COVARIANCE})
+_JUDGED = frozenset({"sigma_e_m", "sigma_n_m", "epu_m", "rc_m", "nac_p", "nic", "nuc_p", "hpl_m", "status", *COVARIANCE})
 """Quantities of tables that bound a position or speak for it. Under a name that is none of the contract their value is not understood."""
 _CONTRACT = ("sigma_m", "rnp_m")
 """Keys of the contract that no table has: written otherwise, they are none of it."""
@@ -30,7 +30,8 @@ def for_core() -> tuple[Kinds, list[str]]:
     kinds: Kinds = [([*named, *(f"{name}_{unit}" for name in sorted(lengths) for unit in UNITS["m"])], [], None)]
     for kind in KINDS:
         several = [f"{name}s" for name in kind.names] if kind.effect == "alert" else []
-        kinds.append((sorted([*kind.names, *several]), sorted(kind.fine), None if math.isinf(kind.above) else kind.above))
+        # What bounds a position in a table is understood under no other name than the contract's.
+        kinds.append((sorted({*kind.names, *several}.difference(named)), sorted(kind.fine), None if math.isinf(kind.above) else kind.above))
     mode = kind_of("nav_mode")
     return kinds, sorted((mode.against if mode is not None else frozenset()) - _USABLE_MODES)
 

@@ -15,7 +15,7 @@ from navbound.table.columns import COVARIANCE, HORIZONTAL
 from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
 NACP_EPU_M = {
     11: 3.0,
@@ -53,6 +53,38 @@ NIC_RC_M = {
 Provenance: inferred (RTCA DO-260B / EUROCAE ED-102A, coding of NIC); the document was not read.
 """
 
+NUCP_EPU_M = {
+    9: 3.0,
+    8: 10.0,
+    7: 0.05 * METRES_PER_NM,
+    6: 0.1 * METRES_PER_NM,
+    5: 0.25 * METRES_PER_NM,
+    4: 0.5 * METRES_PER_NM,
+    3: METRES_PER_NM,
+    2: 5 * METRES_PER_NM,
+    1: 10 * METRES_PER_NM,
+}
+"""Navigation uncertainty category for position of version 0 to the upper limit of the 95 % horizontal radius [m]; 0 is "unknown".
+
+Provenance: inferred (RTCA DO-260 / ICAO Doc 9871, coding of NUCp); the documents were not read.
+"""
+
+NUCP_RC_M = {
+    9: 7.5,
+    8: 25.0,
+    7: 0.1 * METRES_PER_NM,
+    6: 0.2 * METRES_PER_NM,
+    5: 0.5 * METRES_PER_NM,
+    4: METRES_PER_NM,
+    3: 2 * METRES_PER_NM,
+    2: 10 * METRES_PER_NM,
+    1: 20 * METRES_PER_NM,
+}
+"""The same category to the horizontal protection level [m]; 0 is "unknown". Of a message on the ground 6 has none, which no table says.
+
+Provenance: as `NUCP_EPU_M`.
+"""
+
 SIL_RISK = {3: 1e-7, 2: 1e-5, 1: 1e-3}
 """Source integrity level to the risk, an hour or a sample, that the error exceeds the containment radius; 0 is "unknown".
 
@@ -71,7 +103,11 @@ def nacp_sigma_m() -> dict[int, float]:
 
     An EPU is less than the limit that its NACp stands for: the 95 % circle of this sigma, which is right to 1e-12, is so, too.
     """
-    return {category: epu_m * (1.0 - 1e-11) * circular_sigma(0.05) for category, epu_m in NACP_EPU_M.items()}
+    return _sigma_m(NACP_EPU_M)
+
+
+def _sigma_m(limits_m: Mapping[int, float]) -> dict[int, float]:
+    return {category: limit_m * (1.0 - 1e-11) * circular_sigma(0.05) for category, limit_m in limits_m.items()}
 
 
 def circular_sigma(risk: float) -> float:
@@ -79,7 +115,7 @@ def circular_sigma(risk: float) -> float:
     return 1.0 / math.sqrt(-2.0 * math.log(risk))
 
 
-Origin = Literal["file", "file_axes", "epu", "nac_p", "containment_radius", "typed", "none"]
+Origin = Literal["file", "file_axes", "epu", "nac_p", "nuc_p", "containment_radius", "typed", "none"]
 """What a covariance was made of."""
 
 
@@ -98,7 +134,7 @@ def claim(epochs: pl.DataFrame, sigma_m: float | None = None) -> Claimed:
     """Give every epoch the best covariance at hand, null where there is none.
 
     In this order: the caller's standard deviation; covariance columns; standard deviations of the axes; a 95 % radius (EPU); NACp; a
-    containment radius or NIC. A radius R at a risk q becomes a circular covariance with sigma = R / sqrt(-2 ln q).
+    containment radius or NIC; NUCp. A radius R at a risk q becomes a circular covariance with sigma = R / sqrt(-2 ln q).
 
     Parameters
     ----------
@@ -151,20 +187,27 @@ def _least_radii(epochs: pl.DataFrame) -> list[pl.Series]:
         if squares:
             known = pl.any_horizontal(each.is_not_null() for each in squares)
             radii.append(pl.when(known).then((pl.sum_horizontal(squares) / 2).sqrt() / circular_sigma(0.05)))
-    if "nac_p" in epochs.columns:
-        better = {category: NACP_EPU_M.get(category + 1, 0.0) for category in range(12)}
-        radii.append(_in_force("nac_p").replace_strict(better, default=None, return_dtype=pl.Float64))
+    # Version 0 states NUCp alone. Decoders write it of later versions too, which state their accuracy as NACp.
+    for name, limits in (("nac_p", NACP_EPU_M),) if "nac_p" in epochs.columns else (("nuc_p", NUCP_EPU_M),):
+        if name in epochs.columns:
+            better = {category: limits.get(category + 1, 0.0) for category in (0, *limits)}
+            radii.append(_in_force(name).replace_strict(better, default=None, return_dtype=pl.Float64))
     return epochs.select(radius.alias(str(k)) for k, radius in enumerate(radii)).get_columns()
 
 
 def _with_containment(epochs: pl.DataFrame) -> pl.DataFrame:
     """Add `CONTAINMENT`, infinite where the indicator says that there is none, and levels that nothing reads."""
     have = set(epochs.columns)
-    if not have & {"rc_m", "nic", "unread_level_m"}:
+    if not have & {"rc_m", "nic", "nuc_p", "unread_level_m"}:
         return epochs
-    coded = _in_force("nic").replace_strict(NIC_RC_M | {0: math.inf}, default=None, return_dtype=pl.Float64) if "nic" in have else None
-    stated = ([_in_force("rc_m")] if "rc_m" in have else []) + ([] if coded is None else [coded])
+    coded = {
+        name: _in_force(name).replace_strict(radii | {0: math.inf}, default=None, return_dtype=pl.Float64)
+        for name, radii in (("nic", NIC_RC_M), ("nuc_p", NUCP_RC_M))
+        if name in have
+    }
+    stated = ([_in_force("rc_m")] if "rc_m" in have else []) + ([coded["nic"]] if "nic" in have else [])
     radii = ([pl.coalesce(stated)] if stated else []) + ([pl.col("unread_level_m")] if "unread_level_m" in have else [])
+    radii += [coded["nuc_p"]] if "nuc_p" in have else []
     return epochs.with_columns(pl.max_horizontal(radii).alias(CONTAINMENT))
 
 
@@ -195,7 +238,7 @@ def _of_axes(what: str) -> str:
 
 def _beside(have: set[str]) -> str:
     """Accuracies that the file states beside the one that is used."""
-    named = {"epu_m": "EPU", "nac_p": "NACp", "rc_m": "Rc", "nic": "NIC"}
+    named = {"epu_m": "EPU", "nac_p": "NACp", "rc_m": "Rc", "nic": "NIC", "nuc_p": "NUCp"}
     others = [words for name, words in named.items() if name in have]
     compared = " One that is larger than twice the distance root mean square speaks against the covariance." if others else ""
     return f" Stated beside it and not used: {', '.join(others)}.{compared}" if others else ""
@@ -224,7 +267,7 @@ class Claims:
         return replace(claimed, epochs=claimed.epochs[before.height :], own_sigma_m=self._own_m)
 
 
-_INDICATORS = ("nac_p", "nic", "rc_m")
+_INDICATORS = ("nac_p", "nic", "nuc_p", "rc_m")
 
 
 def _coded(epochs: pl.DataFrame, have: set[str]) -> Claimed:
@@ -250,6 +293,13 @@ def _coded(epochs: pl.DataFrame, have: set[str]) -> Claimed:
             f"integrity level 3 {coding}. Rc is an integrity limit, so this sigma is a stand-in."
         )
         return _circle(epochs, radius * k_rc, words, "containment_radius")
+    if "nuc_p" in have:
+        sigma = _in_force("nuc_p").replace_strict(_sigma_m(NUCP_EPU_M), default=None, return_dtype=pl.Float64)
+        words = (
+            f"Covariance: circular, sigma = EPU / {1 / k95:.4f}, EPU being the upper limit of the 95 % radius that NUCp stands for "
+            f"(coding of DO-260, version 0, which was not read); an indicator counts for {HOLD_S:g} s after it was received."
+        )
+        return _circle(epochs, sigma, words, "nuc_p")
     return Claimed(epochs.with_columns(pl.lit(None, pl.Float64).alias(c) for c in COVARIANCE), _NONE, "none")
 
 

@@ -89,7 +89,7 @@ class Belief(Record):
 class CovarianceOrigin(Record):
     """Where the covariance that the bounds rest on comes from."""
 
-    id: Literal["simulated", "filter", "solved", "file", "file_axes", "epu", "nac_p", "containment_radius", "typed", "none"]
+    id: Literal["simulated", "filter", "solved", "file", "file_axes", "epu", "nac_p", "nuc_p", "containment_radius", "typed", "none"]
     sigma_m: float | None = None
     """What the user typed."""
     own_low_m: float | None = None

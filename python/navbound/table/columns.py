@@ -60,13 +60,14 @@ EPOCHS: tuple[Column, ...] = (
     *row("stated_error_m", "the largest lateral or horizontal error that a row of a recording states itself", "source"),
     *row(
         "stated_worse_m",
-        "the 95 % radius that a row of a recording states (EPU, standard deviations, the lower limit of a NACp), where it is larger than "
-        "the row's covariance allows",
+        "the 95 % radius that a row of a recording states (EPU, standard deviations, the lower limit of a NACp or NUCp), where it is "
+        "larger than the row's covariance allows",
         "source",
     ),
     *row(
         "stated_rc_m",
-        "the containment radius that a row of a recording states (Rc, or that of its NIC); infinite where it states that none is known",
+        "the containment radius that a row of a recording states (Rc, or that of its NIC or NUCp); infinite where it states that none is "
+        "known",
         "source",
     ),
     *row("stated_alert", "the word of an alert that a row of a recording states itself; null where it states none", "source", kind="text"),
@@ -227,6 +228,7 @@ READ: tuple[Column, ...] = (
     *row("rc_m", f"horizontal containment radius that a transponder states; {_READ}", "source"),
     *row("setting_hpa", f"altimeter setting that an aircraft broadcasts; {_READ}", "source"),
     *row("nac_p nic", f"accuracy and integrity category that a transponder states; {_READ}", "source", kind="number"),
+    *row("nuc_p", f"category of both that a transponder of version 0 states; {_READ}", "source", kind="number"),
     *row("callsign", f"callsign of the aircraft; {_READ}", "source", kind="text"),
 )
 """What a recording may hold beside the columns of the epoch table."""

@@ -25,7 +25,7 @@ SAME_BOUND = 0.01
 CLOCK_STANDS = 10
 """Rows of one time from which on the clock stands: logs that are joined twice repeat a row once. [1] Provenance: ours."""
 
-BOUNDS = ("sigma_e_m", "sigma_n_m", "sigma_u_m", "epu_m", "rc_m", "nac_p", "nic", "hpl_m", "vpl_m", "hpe_m", "vpe_m")
+BOUNDS = ("sigma_e_m", "sigma_n_m", "sigma_u_m", "epu_m", "rc_m", "nac_p", "nic", "nuc_p", "hpl_m", "vpl_m", "hpe_m", "vpe_m")
 """What a row states of its accuracy or its bound, beside its covariance."""
 
 ERRORS = ("nse_e_m", "nse_n_m", "nse_u_m", "stated_error_m", "truth_h_m")

@@ -18,11 +18,11 @@ ERROR, ALERT = "stated_error_m", "stated_alert"
 """The largest lateral or horizontal error that a row states [m]; the word of an alert that it states, null where it states none."""
 
 WORSE = "stated_worse_m"
-"""The 95 % radius that a row states (EPU, standard deviations, the lower limit of a NACp), where it is larger than the covariance of
-the row allows by any definition [m]."""
+"""The 95 % radius that a row states (EPU, standard deviations, the lower limit of a NACp or NUCp), where it is larger than the covariance
+of the row allows by any definition [m]."""
 
 CONTAINMENT = "stated_rc_m"
-"""The containment radius that a row states (Rc, or that of its NIC); infinite where it states that none is known [m]."""
+"""The containment radius that a row states (Rc, or that of its NIC or NUCp); infinite where it states that none is known [m]."""
 
 TWO_DRMS = 2.0
 """Times the root of the sum of both variances: no ellipse has a 95 % circle as large

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Literal
 import polars as pl
 
 from navbound import _core
+from navbound.read import own_positions
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -42,6 +43,10 @@ class Kind:
         A number may mean either, and is not understood.
     above : float
         A number above it is against the position, any other says nothing.
+    fine_begins : str
+        Words that begin so are fine, unless they are against the position.
+    empty_against : bool
+        A field without a word is against the position; otherwise it states nothing.
     """
 
     effect: Effect
@@ -51,6 +56,8 @@ class Kind:
     other_against: bool = False
     numbers_unknown: bool = False
     above: float = math.inf
+    fine_begins: str = ""
+    empty_against: bool = False
 
 
 def _words(text: str) -> frozenset[str]:
@@ -104,9 +111,22 @@ AGE = Kind(
 )
 """The age of a position, in seconds; it dates the position, too."""
 
-_FOREIGN = _words("mlat tisb tis_b tisb_icao tisb_trackfile tisb_other adsr_icao adsr_other adsr adsc mode_s")
-_OWN = _words("adsb ads_b adsb_icao adsb_icao_nt adsb_other flarm gps gnss")
-"""Sources of positions, as readsb and others write them. By the decoder of live records, too, `adsb_` alone is the aircraft's own."""
+BY_OTHERS = Kind("invalid", own_positions.LISTS, _YES, _words("0 false f no n none off []"), other_against=True)
+"""Whether others computed the position."""
+
+NUC = Kind("invalid", _words("nuc_p nucp nuc"), _words("0"), frozenset("123456789"))
+"""Version 0 transponders: 0 is an unknown integrity. The other categories are radii."""
+
+READSB_TYPE = Kind(
+    "invalid",
+    frozenset(),
+    own_positions.FOREIGN,
+    frozenset(),
+    other_against=True,
+    fine_begins=own_positions.OWN_BEGINS,
+    empty_against=True,
+)
+"""The `type` of readsb's aircraft, by the rule of its live lines."""
 
 KINDS: tuple[Kind, ...] = (
     Kind(
@@ -161,7 +181,8 @@ KINDS: tuple[Kind, ...] = (
             "extrapolated propagated predicted simulated simulator simulation manual fixedpos memory last_known lost degraded fail failed "
             "fault alert alarm warning caution not_available unavailable denied reversion reversionary no_nav acquisition standby "
             "stopped halted frozen stale jammed spoofed unreliable"
-        ),
+        )
+        | own_positions.COMPUTED,
         _FIX - _words("2 3 4 5 6 9")
         | _words(
             "nav navigation normal ok good sol_computed waas egnos narrow_int wide_int l1_int psrdiff l1_float "
@@ -185,11 +206,17 @@ KINDS: tuple[Kind, ...] = (
     Kind("invalid", _words("no_position no_pos without_position"), _YES | {"n"}, _words("p 0 false no"), other_against=True),
     AGE,
     # How a position came: what others computed or repeat is none that the aircraft claims anything of.
-    Kind("invalid", _words("type source source_type"), _FOREIGN, _OWN),
-    # As numbers of OpenSky: ADS-B, ASTERIX, MLAT, FLARM.
-    Kind("invalid", _words("position_source pos_source"), _FOREIGN | _words("asterix 1 2"), _OWN | _words("0 3")),
-    # Version 0 transponders: 0 is an unknown integrity.
-    Kind("invalid", _words("nuc_p nucp nuc"), _words("0"), frozenset("123456789")),
+    Kind("invalid", own_positions.OF_ANYTHING, own_positions.FOREIGN, own_positions.OWN, fine_begins=own_positions.OWN_BEGINS),
+    Kind(
+        "invalid",
+        own_positions.OF_POSITION,
+        own_positions.FOREIGN | own_positions.OPENSKY_FOREIGN,
+        own_positions.OWN | own_positions.OPENSKY_OWN,
+        other_against=True,
+        fine_begins=own_positions.OWN_BEGINS,
+    ),
+    BY_OTHERS,
+    NUC,
     # The rule of solved positions; receivers write 99.99 where they know none.
     Kind("invalid", _words("hdop pdop gdop vdop dop"), frozenset(), frozenset(), above=_core.MOST_DILUTION),
     Kind(
@@ -397,8 +424,11 @@ def stated(kind: Kind, raw: pl.Series) -> Stated:
     declared = text.is_not_null() & ~text.is_in(_MISSING)
     fine = text.is_in(_listed(kind.fine))
     against = text.is_in(_listed(kind.against))
+    if kind.fine_begins:
+        fine |= text.str.starts_with(kind.fine_begins) & ~against
     unknown = declared & ~fine & ~against
-    empty = (~declared.fill_null(value=False)).any() and kind.effect == "invalid"
+    missing = ~declared.fill_null(value=False)
+    empty = missing.any() and kind.effect == "invalid" and not kind.empty_against
     if kind.numbers_unknown:
         unknown, fine = unknown | (declared & number), fine & ~number
     if kind.other_against:
@@ -411,6 +441,8 @@ def stated(kind: Kind, raw: pl.Series) -> Stated:
     alarm = (unknown & ~number & _alarm(text, _STATE_ALARM)).fill_null(value=False)
     against, unknown = against | alarm, unknown & ~alarm
     words = pl.select(pl.when(declared & against & ~fine).then(text)).to_series()
+    if kind.empty_against:
+        words = pl.select(pl.when(missing).then(pl.lit("nothing")).otherwise(words)).to_series()
     return Stated(words, text.filter(unknown.fill_null(value=False)).unique(maintain_order=True).head(SHOWN).to_list() + ["empty"] * empty)
 
 

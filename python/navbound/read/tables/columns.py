@@ -10,7 +10,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError, InputError
-from navbound.read.checks.statements import kind_of, speaks_of_accuracy, speaks_of_integrity, speaks_of_level
+from navbound.read.checks.statements import NUC, READSB_TYPE, kind_of, speaks_of_accuracy, speaks_of_integrity, speaks_of_level
+from navbound.read.own_positions import READSB
 from navbound.table.columns import COVARIANCE, EPOCHS, READ, VARIANCES
 from navbound.units import METRES_PER_FT, METRES_PER_NM, MPS_PER_KT
 
@@ -155,6 +156,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     _q("rc_m", 0.0, _INF, m="rc", nm="rc_nm"),
     _q("nac_p", 0.0, 15.0, **{"1": "nacp nac_p"}),
     _q("nic", 0.0, 15.0, **{"1": "nic"}),
+    _q("nuc_p", 0.0, 9.0, **{"1": "nucp nuc_p nuc"}),
     # What cannot be a setting is judged where it is used: the position beside it is none the worse.
     _q("setting_hpa", -_INF, _INF, hpa="nav_qnh qnh qnh_hpa altimeter_setting_hpa"),
     _q("n_sv", 0.0, 255.0, **{"1": _SATELLITES}),
@@ -401,18 +403,20 @@ def assign(
     kinds = {name: kind_of(_plain(name)[0]) for name in free}
     if {_plain(name)[0] for name in names} & TRANSPONDER:
         kinds.pop("alert", None)
+    if {_plain(name)[0] for name in names} >= READSB:
+        kinds |= {name: READSB_TYPE for name in free if _plain(name)[0] == "type"}
     if tuple(needs) != POSITION:
         # A level counts with any dilution: an error above it is misleading all the same.
         kinds = {name: kind for name, kind in kinds.items() if kind is None or not math.isfinite(kind.above)}
-    # The mode of a table of levels is a word of the method that gave them, or one against the position.
-    kinds |= {columns[name].name: kind_of(name) for name in ("mode",) if name in columns}
+    # The mode of a table of levels is a word of the method that gave them, or one against the position. NUCp 0 is no integrity at all.
+    kinds |= {columns[name].name: kind_of(name) for name in ("mode", "nuc_p") if name in columns}
     statements = [(name, kind) for name, kind in kinds.items() if kind is not None]
     stating = {name for name, _ in statements}
-    again = _again(columns, times, {*(declared or {}), *beside}, [n for n in free if n not in stating], path)
+    again = _again(columns, times, {*(declared or {}), *beside}, [n for n in free if kinds.get(n) in (None, NUC)], path)
     return Assignment(columns, times, [n for n in free if n not in stating], statements, again, absent)
 
 
-_COMPARED = ("est_lat_rad", "est_lon_rad", "ground_speed_mps", "nac_p", "nic")
+_COMPARED = ("est_lat_rad", "est_lon_rad", "ground_speed_mps", "nac_p", "nic", "nuc_p")
 """Quantities of which further columns are compared with the one that is read."""
 
 

@@ -27,7 +27,7 @@ SPEEDS_APART_MPS, SPEEDS_APART = 10.0, 0.1
 SPEEDS_SHARE = 0.2
 """Share of rows from which two speeds that contradict each other leave nothing shown. Provenance: ours. [1]"""
 _VELOCITY = ("vel_n_mps", "vel_e_mps")
-_INDICATORS = ("nac_p", "nic")
+_INDICATORS = ("nac_p", "nic", "nuc_p")
 """Of two columns the smaller counts: the less is claimed."""
 _SCALE_M = {"est_lat_rad": pl.lit(EARTH_RADIUS_M), "est_lon_rad": EARTH_RADIUS_M * pl.col("est_lat_rad").cos()}
 """Metres of a radian, for the quantities of a position."""

@@ -13,6 +13,7 @@ import polars as pl
 
 from navbound.errors import FormatError
 from navbound.read.checks.rejections import Rejections
+from navbound.read.tables import trace
 from navbound.read.tables.memory import require_free
 from navbound.storage import packed
 
@@ -254,7 +255,7 @@ def _json(source: Source) -> Table:
         raise FormatError(source.path, "not a table: JSON nested too deeply") from e
     rejections = Rejections(source.path, "record")
     if isinstance(data, dict) and isinstance(data.get("trace"), list):
-        columns = _readsb(source, data)
+        columns = trace.columns_of(source, data)
     elif isinstance(data, dict):
         rows = {tuple(values) for values in data.values() if isinstance(values, dict)}
         if len(rows) > 1:
@@ -319,41 +320,6 @@ def _records(source: Source, data: list[Any]) -> dict[str, list[Any]]:
         raise FormatError(source.path, "not a table: a list of records {column: value} is needed")
     names = dict.fromkeys(name for record in data for name in record)
     return {name: [record.get(name) for record in data] for name in names}
-
-
-def _readsb(source: Source, data: dict[str, Any]) -> dict[str, list[Any]]:
-    """Take the trace of one aircraft apart, as readsb and its web services write it.
-
-    Rows are ``[seconds, lat, lon, pressure altitude ft or "ground", kt, deg, flags, ft/min, details, source, geometric altitude ft, ...]``;
-    quality indicators stand in the details, when they were received.
-    """
-    trace = data["trace"]
-    if not all(isinstance(row, list) and len(row) >= 9 for row in trace) or not isinstance(data.get("timestamp"), (int, float)):
-        raise FormatError(source.path, "not a readsb trace: a start time and rows of at least nine items are needed", field="trace")
-    details = [row[8] if isinstance(row[8], dict) else {} for row in trace]
-    kinds, kind = list[str | None](), None
-    for row, each in zip(trace, details, strict=True):
-        # Of the row itself, or of the last details.
-        kind = each.get("type", kind)
-        kinds.append(row[9] if len(row) > 9 and isinstance(row[9], str) else kind)
-    start = data["timestamp"]
-    seconds = [row[0] for row in trace]
-    if not all(isinstance(s, (int, float)) for s in seconds):
-        raise FormatError(source.path, "not a readsb trace: rows begin with seconds", field="trace")
-    names = {"lat": 1, "lon": 2, "groundspeed": 4, "track": 5, "vertical_rate": 7}
-    columns = {name: [row[i] for row in trace] for name, i in names.items()}
-    return columns | {
-        "unix_time_s": [start + s for s in seconds],
-        "altitude": [None if row[3] == "ground" else row[3] for row in trace],
-        "geoaltitude": [row[10] if len(row) > 10 else None for row in trace],
-        "icao24": [str(data.get("icao", source.stem))] * len(trace),
-        "callsign": [d.get("flight") for d in details],
-        "type": kinds,
-        "nav_qnh": [d.get("nav_qnh") for d in details],
-        "nac_p": [d.get("nac_p") for d in details],
-        "nic": [d.get("nic") for d in details],
-        "rc": [d.get("rc") for d in details],
-    }
 
 
 def _series(name: str, values: list[Any]) -> pl.Series:

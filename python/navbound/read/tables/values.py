@@ -9,6 +9,7 @@ import polars as pl
 
 from navbound import status
 from navbound.errors import UNSEEN, FormatError
+from navbound.read import own_positions
 from navbound.read.checks import levels, stated, statements
 from navbound.read.checks.places import NO_PLACE, Nowhere
 from navbound.read.checks.rejections import Kind, Tally
@@ -124,6 +125,7 @@ class Values:
         FormatError
             A column that holds neither numbers nor text.
         """
+        frame = own_positions.without_lists(frame, [name for name, kind in self._mapping.statements if kind is statements.BY_OTHERS])
         self._check_kinds(frame)
         frame = self._without_names_and_units(frame)
         out, against, reasons = {LINE: frame[LINE]}, list[tuple[str, pl.Series]](), dict[str, pl.Series]()

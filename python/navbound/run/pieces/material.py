@@ -33,6 +33,7 @@ AUXILIARY = (
     "callsign",
     "nac_p",
     "nic",
+    "nuc_p",
     "rc_m",
     "epu_m",
     "sigma_e_m",

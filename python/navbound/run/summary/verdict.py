@@ -154,6 +154,6 @@ def _assumed(material: Material, judging: str) -> list[Literal["sigma_typed", "s
     assumed: list[Literal["sigma_typed", "sigma_coded", "no_path"]] = []
     if material.covariance.id == "typed":
         assumed.append("sigma_typed")
-    elif material.covariance.id in {"nac_p", "containment_radius"}:
+    elif material.covariance.id in {"nac_p", "nuc_p", "containment_radius"}:
         assumed.append("sigma_coded")
     return [*assumed, "no_path"] if method(judging).error_column == "nse_h_m" else assumed

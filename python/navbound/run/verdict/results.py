@@ -85,7 +85,7 @@ def unread_words(unread: Sequence[str]) -> list[str]:
 def _assumed(verdict: Verdict, covariance: CovarianceOrigin) -> str:
     named = {
         "sigma_typed": _typed(covariance),
-        "sigma_coded": "a sigma made of a quality indicator (NACp, NIC or Rc)",
+        "sigma_coded": "a sigma made of a quality indicator (NACp, NUCp, NIC or Rc)",
         "no_path": "no path (the circle of the position error is compared with RNP, without flight technical error)",
     }
     aside = [f"{', '.join(verdict.set_aside)} set aside by the user"] if verdict.set_aside else []
@@ -185,12 +185,12 @@ def _not_shown(verdict: Verdict) -> list[str]:
         why.append(f"The recording itself states an alert at {verdict.n_stated_alert} epochs.")
     if verdict.n_stated_worse:
         why.append(
-            f"The recording itself states an accuracy (95 % radius: EPU, NACp, sigma) at {verdict.n_stated_worse} epochs that is worse "
-            f"than the covariance allows.{_read_as_metres(verdict.unread)}"
+            f"The recording itself states an accuracy (95 % radius: EPU, NACp, NUCp, sigma) at {verdict.n_stated_worse} epochs that is "
+            f"worse than the covariance allows.{_read_as_metres(verdict.unread)}"
         )
     if verdict.n_stated_uncontained:
         why.append(
-            f"The recording itself states a containment radius (Rc, NIC, a protection level) beyond twice RNP, or none, at "
+            f"The recording itself states a containment radius (Rc, NIC, NUCp, a protection level) beyond twice RNP, or none, at "
             f"{verdict.n_stated_uncontained} epochs.{_levels_read_as_metres(verdict.unread)}"
         )
     if verdict.n_apart and verdict.largest_apart_m is not None:

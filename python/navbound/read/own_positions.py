@@ -1,0 +1,115 @@
+"""How a position came to be, in the words of a recording: from the aircraft itself, or computed or repeated by others.
+
+Categories of accuracy and integrity are claims about the position that the aircraft sends. A position that others computed or repeat has
+none of them, whatever stands beside it. FLARM sends the position of the aircraft's own receiver.
+Words and numbers as readsb, dump1090 and OpenSky write them (provenance: standard, from knowledge of the formats; lists of values: the
+README of readsb's JSON).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import polars as pl
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+OWN_BEGINS = "adsb_"
+"""Sources of readsb that begin so are the aircraft's own, whatever follows; the decoder of live lines has the same rule."""
+
+COMPUTED = _words(
+    "mlat multilateration multilaterated wam wide_area_multilateration lam tdoa "
+    "tisb tis_b tisb_icao tisb_trackfile tisb_other adsr adsr_icao adsr_other ads_r rebroadcast "
+    "radar psr ssr mssr primary_radar secondary_radar surveillance_radar primary_surveillance_radar secondary_surveillance_radar "
+    "surface_movement_radar asterix estimated interpolated extrapolated predicted propagated coasted coasting dead_reckoning synthetic "
+    "simulated"
+)
+"""Words of positions that others computed or repeat, or that nothing measured."""
+
+FOREIGN = COMPUTED | _words("adsc ads_c mode_s modes mode_ac mode_a_c")
+"""Words of sources whose positions are none that the aircraft claims a category of."""
+
+OWN = _words(
+    "adsb ads_b adsb_icao adsb_icao_nt adsb_other adsb_1090 ads_b_1090 ads_b_1090es 1090es adsb_uat ads_b_uat uat flarm ais "
+    "gps gnss glonass galileo beidou sbas waas egnos gbas dgps dgnss rtk rtk_fixed rtk_float ppp gps_ins gnss_ins"
+)
+"""Words of positions of the aircraft's own receiver."""
+
+OF_POSITION = _words(
+    "position_source pos_source position_src pos_src position_source_type position_source_id position_source_name position_origin "
+    "pos_origin location_source fix_source position_method positioning_method positioning_source positioning_type"
+)
+"""Columns that say nothing but how the position came: a word that nobody knows is none of the aircraft's own."""
+OPENSKY_FOREIGN, OPENSKY_OWN = _words("1 2"), _words("0 3")
+"""Numbers of OpenSky in them: 1 ASTERIX, 2 MLAT; 0 ADS-B, 3 FLARM."""
+
+OF_ANYTHING = _words(
+    "type source source_type src data_source track_source surveillance_source surveillance_type nav_source navigation_source"
+)
+"""Columns that may say that, or what kind of aircraft, of message or of receiver: a word that is not known is named."""
+
+LISTS = _words(
+    "mlat is_mlat by_mlat from_mlat mlat_position position_mlat multilateration multilaterated is_multilaterated "
+    "tisb is_tisb by_tisb from_tisb tisb_position position_tisb"
+)
+"""Columns that say whether others computed a position: a truth value, or the names of the values that are theirs."""
+
+READSB = _words("hex seen_pos")
+"""A table with both is one of readsb's aircraft: its `type` is how the position came, and a row without one claims nothing."""
+
+_OF_PLACE = ("lat", "lon")
+
+
+def names_position(values: object) -> bool:
+    """Whether a list of values that others computed has the position, or is no list."""
+    if not values:
+        return False
+    return not isinstance(values, list) or any(name in values for name in _OF_PLACE)
+
+
+def without_lists(frame: pl.DataFrame, names: Iterable[str]) -> pl.DataFrame:
+    """The named columns with whether a list of each row has the position; what is no list stays as it is."""
+    replaced = []
+    for name in names:
+        dtype = frame.schema[name]
+        if isinstance(dtype, pl.List) and not dtype.inner.is_nested():
+            listed = pl.col(name).cast(pl.List(pl.String))
+            has = pl.any_horizontal(listed.list.contains(pl.lit(each)) for each in _OF_PLACE)
+            # A row without a list names nothing.
+            replaced.append(has.fill_null(value=False).alias(name))
+        elif dtype == pl.String:
+            text = pl.col(name)
+            has = text.str.contains(r"""["'\s\[,](lat|lon)["'\s\],]""").cast(pl.String)
+            replaced.append(pl.when(text.str.strip_chars().str.starts_with("[")).then(has).otherwise(text).alias(name))
+    return frame.with_columns(replaced)
+
+
+class OfTrace:
+    """The source of each position of a readsb trace: that of the row itself, otherwise of the last details.
+
+    A list of the last details that has the position counts until the next details, or until a row states another source.
+    """
+
+    def __init__(self) -> None:
+        self._kind: object = None
+        self._beside: object = None
+        self._computed = ""
+
+    def of(self, stated: object, details: Mapping[str, object] | None) -> str:
+        """The word of the next row."""
+        if details is not None:
+            self._kind = details.get("type", self._kind)
+            self._computed = next((name for name in ("mlat", "tisb") if names_position(details.get(name))), "")
+            self._beside = stated
+        elif stated is not None and stated != self._beside:
+            self._computed = ""
+        if self._computed:
+            return self._computed
+        kind = self._kind if stated is None else stated
+        return kind if isinstance(kind, str) and kind.strip() else "unknown"
