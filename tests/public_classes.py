@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import functools
+import os
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from navbound import araim, dme, gnss, ins, kpi, path, raim, rnp, tse
+from navbound import araim, dme, gnss, ins, kpi, path, raim, rnp, tse, write
 from public_calls import ORBITS, SIGMA, SYSTEM, TWO, UNIT, Call
 
 if TYPE_CHECKING:
@@ -108,7 +109,17 @@ def part(cls: Callable[..., Any], name: str, **numbers: Any) -> Call:
 
 NOISE: dict[str, Any] = {"white": 1e-5, "bias": 1e-4, "bias_time_s": 3600.0}
 
+SENT: dict[str, Any] = {"begin_s": 3, "kind": 63, "fields": [(1, 2), (-1, 3)]}
+
+
+def sent(**parts: Any) -> Any:
+    """A message of an SBAS service, written."""
+    return write.ems([write.Sent(**parts)], 120, os.devnull)
+
+
 CLASSES: dict[str, Call] = {
+    "write.Sent": Call(sent, {name: SENT[name] for name in ("begin_s", "kind")}, {"fields": SENT["fields"]}, made_of=write.Sent),
+    "write.ems": Call(lambda messages, prn: write.ems(messages, prn, os.devnull), {"prn": 120}, {"messages": [write.Sent(**SENT)]}),
     "tse.Exact": of_class(tse.Exact, lambda exact: exact(30.0, 8.0), risk=1e-5),
     "tse.Exact.__call__": Call(tse.Exact(1e-5), {"fte_m": 30.0 * TWO, "sigma_m": 8.0 * TWO}),
     "rnp.PerHour": of_class(rnp.PerHour, lambda basis: basis.per_epoch(1e-5, 1.0), tau_s=60.0),

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import navbound
-from navbound import InputError, InternalError, NavboundError, _core, anp, gnss, ins, maps, raim, tse
+from navbound import InputError, InternalError, NavboundError, _core, anp, gnss, ins, maps, raim, tse, write
 from navbound.table.arguments import checked
 from navbound.table.arrays import MOST_BYTES, flatten
 from public_calls import CALLS, MODULES
@@ -218,7 +218,8 @@ def test_whole_numbers_give_the_answer_of_the_same_numbers_with_a_point(name: st
 
 
 JOBS = {"fly": navbound.fly, "analyze": navbound.analyze, "study": navbound.study, "maps.make": maps.make}
-FUNCTIONS = JOBS | {name: getattr(MODULES[name.split(".")[0]], name.split(".")[1]) for name in sorted(public())}
+WRITERS = {f"write.{name}": each for name, each in vars(write).items() if name in write.__all__ and inspect.isfunction(each)}
+FUNCTIONS = JOBS | WRITERS | {name: getattr(MODULES[name.split(".")[0]], name.split(".")[1]) for name in sorted(public())}
 UNCHECKED = {("analyze", "levels"), ("kpi.evaluate", "levels"), ("maps.make", "grid"), ("maps.make", "workers")}
 """Arguments whose kind the job itself refuses."""
 PARAMETERS = [

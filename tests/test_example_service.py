@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -30,15 +32,73 @@ def test_an_empty_message_has_the_preamble_of_its_time_and_the_parity_of_the_sta
     )
 
 
+# The first second of 2080, GPS time: its year has no two digits that a reader takes for it.
+AFTER_S = int((datetime(2080, 1, 1, tzinfo=UTC) - datetime(1980, 1, 6, tzinfo=UTC)).total_seconds())
+
+
 @pytest.mark.parametrize(
-    "wrong", [{"fields": [(4, 2)]}, {"fields": [(-3, 2)]}, {"fields": [(0, 213)]}, {"kind": 64}], ids=["large", "small", "long", "kind"]
+    ("wrong", "named"),
+    [
+        ({"fields": [(4, 2)]}, "fields[0]"),
+        ({"fields": [(-3, 2)]}, "fields[0]"),
+        ({"fields": [(0, 213)]}, "bits of fields[0]"),
+        ({"fields": [(0, 200), (0, 13)]}, "fields"),
+        ({"fields": [(0, 1), (0, 0)]}, "bits of fields[1]"),
+        ({"fields": [(0, -1)]}, "bits of fields[0]"),
+        ({"fields": [(0, 10**10)]}, "bits of fields[0]"),
+        ({"fields": [(0, 2.0)]}, "bits of fields[0]"),
+        ({"fields": [(1.0, 2)]}, "fields[0]"),
+        ({"fields": [("1", 2)]}, "fields[0]"),
+        ({"fields": [(True, 2)]}, "fields[0]"),
+        ({"fields": [(np.float64(1.0), 2)]}, "fields[0]"),
+        ({"fields": [(1,)]}, "fields"),
+        ({"fields": [1, 2]}, "fields"),
+        ({"fields": "12"}, "fields"),
+        ({"kind": 64}, "kind"),
+        ({"kind": -1}, "kind"),
+        ({"kind": 6.0}, "kind"),
+        ({"kind": True}, "kind"),
+        ({"begin_s": -1}, "begin_s"),
+        ({"begin_s": 3.0}, "begin_s"),
+        ({"begin_s": 2**70}, "begin_s"),
+        ({"begin_s": AFTER_S - 1}, "begin_s"),
+    ],
+    ids=str,
 )
-def test_what_the_bits_cannot_hold_is_refused(tmp_path: Path, wrong: dict[str, object]) -> None:
-    with pytest.raises(InputError):
+def test_a_message_that_is_none_is_refused_by_its_part(tmp_path: Path, wrong: dict[str, object], named: str) -> None:
+    with pytest.raises(InputError) as refusal:
         write.ems([fields(**wrong)], PRN, tmp_path / "a.ems")
-    with pytest.raises(InputError, match="prn"):
-        write.ems([fields()], 119, tmp_path / "a.ems")
+    assert refusal.value.argument == named
     assert not (tmp_path / "a.ems").exists()
+
+
+@pytest.mark.parametrize("prn", [119, 159, 120.0, "120", True, None])
+def test_a_satellite_that_is_none_is_refused(tmp_path: Path, prn: object) -> None:
+    with pytest.raises(InputError) as refusal:
+        write.ems([fields()], prn, tmp_path / "a.ems")  # type: ignore[arg-type]
+    assert refusal.value.argument == "prn"
+
+
+@pytest.mark.parametrize(
+    "messages", [[], fields(), [fields(), fields()], [fields(begin_s=4), fields()], [fields(), None], "messages"], ids=lambda _: ""
+)
+def test_messages_that_make_no_log_are_refused(tmp_path: Path, messages: Any) -> None:
+    with pytest.raises(InputError) as refusal:
+        write.ems(messages, PRN, tmp_path / "a.ems")
+    assert refusal.value.argument == "messages"
+    assert not (tmp_path / "a.ems").exists()
+
+
+def test_whole_numbers_of_numpy_and_items_one_by_one_are_what_they_are(tmp_path: Path) -> None:
+    plain = write.ems([fields(fields=[(5, 4), (-1, 3)])], PRN, tmp_path / "a.ems")
+    of_numpy = fields(begin_s=np.int64(3), kind=np.uint8(63), fields=((np.int16(5), np.uint8(4)), (np.int8(-1), 3)))
+    other = write.ems(iter([of_numpy]), np.int32(PRN), tmp_path / "b.ems")  # type: ignore[arg-type]
+    assert plain.read_bytes() == other.read_bytes()
+
+
+def test_the_last_second_that_two_digits_name_is_read_back(tmp_path: Path) -> None:
+    messages = sbas.read(write.ems([fields(begin_s=AFTER_S - 2)], PRN, tmp_path / "a.ems"))
+    assert [m.time_ns for m in sbas.decode(messages)] == [(AFTER_S - 1) * 1_000_000_000]
 
 
 @pytest.fixture(scope="module")

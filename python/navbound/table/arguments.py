@@ -12,7 +12,7 @@ import inspect
 import math
 import types
 import typing
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeGuard, TypeVar
 
 import numpy as np
@@ -144,6 +144,8 @@ def _alternative(node: ast.expr, known: Mapping[str, Any]) -> Check | None:
         return _kind("None", lambda value: value is None)
     if isinstance(node, ast.Name):
         return _NAMED.get(node.id) or _resolved(known.get(node.id))
+    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+        return _resolved(getattr(known.get(node.value.id), node.attr, None))
     if isinstance(node, ast.Subscript) and isinstance(node.value, ast.Name):
         return _subscripted(node.value.id, ast.unparse(node.slice), node.slice)
     return None
@@ -226,6 +228,19 @@ def nanoseconds(name: str, value: Any) -> int:
     return int(value)
 
 
+def whole(name: str, value: Any, low: int, high: int, unit: str = "1") -> int:
+    """A whole number, of Python or NumPy, that is no truth value.
+
+    Raises
+    ------
+    InputError
+        Anything else, or a number that is not from `low` to `high`.
+    """
+    if isinstance(value, bool | np.bool_) or not isinstance(value, int | np.integer) or not low <= int(value) <= high:
+        raise InputError(name, shown(value), unit, f"[{low}, {high}], whole")
+    return int(value)
+
+
 def _integer(name: str, value: Any) -> None:
     if not isinstance(value, int | np.integer):
         raise InputError(name, shown(value), domain="a whole number")
@@ -302,6 +317,7 @@ _OF_NUMBERS: dict[tuple[str, str], Check] = {
 }
 _SUBSCRIPTED: dict[str, Check] = {
     "Sequence": _kind("a sequence", lambda value: isinstance(value, Sequence) and not isinstance(value, str | bytes)),
+    "Iterable": _kind("items one by one", lambda value: isinstance(value, Iterable) and not isinstance(value, str | bytes)),
     "Mapping": _kind("a mapping", lambda value: isinstance(value, Mapping)),
     "Callable": _kind("callable", callable),
 }

@@ -11,6 +11,7 @@ import polars as pl
 
 from navbound import _core
 from navbound.errors import ConflictError, InputError
+from navbound.table.arguments import checked, whole
 from navbound.table.columns import COVARIANCE
 from navbound.write.geographic import Shape, geojson, kml, shapes
 from navbound.write.measurements import WrittenLog, navigation, observations, ubx
@@ -43,6 +44,7 @@ class Written:
     n_left_out: int
 
 
+@checked
 def rtklib(epochs: pl.DataFrame, path: str | Path, *, track: str | None = None, quality: int = 5) -> Written:
     """Write the epoch table as an RTKLIB solution file (`.pos`), which :func:`navbound.read.read` reads back.
 
@@ -70,8 +72,7 @@ def rtklib(epochs: pl.DataFrame, path: str | Path, *, track: str | None = None, 
     missing = [c for c in (*_POSITION, *COVARIANCE) if c not in epochs.columns]
     if missing:
         raise InputError("epochs", f"a table without {', '.join(missing)}", domain="a table with time, position and covariance")
-    if quality not in range(1, 8):
-        raise InputError("quality", quality, "1", "[1, 7]")
+    quality = whole("quality", quality, 1, 7)
     tracks = epochs["track"].unique(maintain_order=True).to_list() if "track" in epochs.columns else []
     if track is not None:
         if track not in tracks:

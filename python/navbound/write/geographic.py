@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -15,12 +16,13 @@ import polars as pl
 
 from navbound.errors import FormatError, InputError
 from navbound.status import USABLE
+from navbound.table.arguments import checked
 from navbound.table.columns import HORIZONTAL
 from navbound.time import utc_text
 from navbound.units import EARTH_RADIUS_M
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from navbound.records.run import Waypoint
 
@@ -57,6 +59,7 @@ class Shape:
     properties: dict[str, Any]
 
 
+@checked
 def shapes(
     epochs: pl.DataFrame, *, events: pl.DataFrame | None = None, waypoints: Sequence[Waypoint] = (), ellipse_every_s: float | None = None
 ) -> list[Shape]:
@@ -106,6 +109,7 @@ def shapes(
     return made
 
 
+@checked
 def geojson(made: Sequence[Shape], path: str | Path) -> Path:
     """Write shapes as a FeatureCollection.
 
@@ -128,6 +132,7 @@ def geojson(made: Sequence[Shape], path: str | Path) -> Path:
     return _put(path, json.dumps({"type": "FeatureCollection", "features": features}, ensure_ascii=False, allow_nan=False))
 
 
+@checked
 def kml(made: Sequence[Shape], path: str | Path) -> Path:
     """Write shapes as a document with one style for each state.
 

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from navbound import _core
-
-if TYPE_CHECKING:
-    from navbound.gnss import Navigation, Observations
+from navbound.gnss import Navigation, Observations
+from navbound.table.arguments import checked
 
 _PROGRAM = f"navbound {_core.__version__}"
 
@@ -33,6 +31,7 @@ class WrittenLog:
     n_left_out: int
 
 
+@checked
 def observations(measured: Observations, path: str | Path) -> Path:
     """Write observations as RINEX 3.05, whatever they were read from: version 2, compact RINEX, a receiver's log.
 
@@ -58,6 +57,7 @@ def observations(measured: Observations, path: str | Path) -> Path:
     return place
 
 
+@checked
 def navigation(broadcast: Navigation, path: str | Path) -> Path:
     """Write broadcast records of GPS (LNAV) and Galileo (I/NAV, F/NAV) as RINEX 3.05.
 
@@ -83,6 +83,7 @@ def navigation(broadcast: Navigation, path: str | Path) -> Path:
     return place
 
 
+@checked
 def ubx(measured: Observations, path: str | Path) -> WrittenLog:
     """Write observations as a u-blox log of RXM-RAWX frames.
 
