@@ -205,7 +205,7 @@ class _OfText(_FirstPass):
             return
         if self._layout is None:
             self._layout = layout_of(self.path, lines)
-            self.named([name for name in self._layout.names if name], rows_of(self.path, self._layout, lines[1:]).frame)
+            self.named(self._layout.columns, rows_of(self.path, self._layout, lines[1:]).frame)
             with self.path.open("rb") as file:
                 require_same_in_remarks(file.read(HEAD_BYTES).decode("utf-8", "replace"), self.mapping, self.path)
             lines = lines[1:]

@@ -109,12 +109,18 @@ _SATELLITES = (
 """Names of the number of satellites of a position; one of those in view is none the smaller."""
 
 QUANTITIES: tuple[Quantity, ...] = (
-    _q("est_lat_rad", -math.pi / 2, math.pi / 2, deg="latitude lat lat_deg latitude_deg est_lat_deg", rad="lat_rad latitude_rad"),
+    _q(
+        "est_lat_rad",
+        -math.pi / 2,
+        math.pi / 2,
+        deg="latitude lat lat_deg latitude_deg est_lat_deg position_latitude",
+        rad="lat_rad latitude_rad",
+    ),
     _q(
         "est_lon_rad",
         -math.pi,
         2 * math.pi,
-        deg="longitude lon lng long lon_deg longitude_deg est_lon_deg",
+        deg="longitude lon lng long lon_deg longitude_deg est_lon_deg position_longitude",
         rad="lon_rad longitude_rad",
     ),
     _q(
@@ -234,6 +240,16 @@ OPENSKY_STATES: dict[str, tuple[str, str]] = {
 }
 """State vectors as the OpenSky Network stores them, in SI; its ``heading`` is the track. A table is one when it has all these names,
 some of which mean something else elsewhere."""
+
+FLIGHTRADAR24: dict[str, tuple[str, str]] = {
+    "est_lat_rad": ("position latitude", "deg"),
+    "est_lon_rad": ("position longitude", "deg"),
+    "callsign": ("Callsign", "text"),
+    "altitude_m": ("Altitude", "ft"),
+    "ground_speed_mps": ("Speed", "kt"),
+    "ground_track_rad": ("Direction", "deg"),
+}
+"""The export of a flight by Flightradar24, its `Position` taken apart. Provenance: standard, from knowledge of the format."""
 
 
 _LONGEST_NAME = 80
@@ -382,10 +398,9 @@ def assign(
     taken = {c.name for c in [*columns.values(), *times]}
     if {_plain(name)[0] for name in names} & TRANSPONDER:
         quantities = tuple(q for q in quantities if q.name != "alert")
-    if {name for name, _ in OPENSKY_STATES.values()} <= set(names):
-        states = {key: Column(key, name, unit) for key, (name, unit) in OPENSKY_STATES.items() if name not in taken and key not in absent}
-        columns = states | columns
-        taken |= {c.name for c in states.values()}
+    states = {q: c for q, c in _of_layouts(names).items() if c.name not in taken and q not in absent}
+    columns = states | columns
+    taken |= {c.name for c in states.values()}
     for quantity in quantities:
         if quantity.name not in columns and quantity.name not in absent:
             assigned = _known(quantity, [n for n in names if n not in taken], path, own=own)
@@ -414,6 +429,12 @@ def assign(
     stating = {name for name, _ in statements}
     again = _again(columns, times, {*(declared or {}), *beside}, [n for n in free if kinds.get(n) in (None, NUC)], path)
     return Assignment(columns, times, [n for n in free if n not in stating], statements, again, absent)
+
+
+def _of_layouts(names: list[str]) -> dict[str, Column]:
+    """What the columns are where a table has all names of a program that writes them in units of its own."""
+    layouts = [layout for layout in (OPENSKY_STATES, FLIGHTRADAR24) if {name for name, _ in layout.values()} <= set(names)]
+    return {quantity: Column(quantity, name, unit) for layout in layouts for quantity, (name, unit) in layout.items()}
 
 
 _COMPARED = ("est_lat_rad", "est_lon_rad", "ground_speed_mps", "nac_p", "nic", "nuc_p")

@@ -6,7 +6,7 @@ import io
 import json
 import re
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import polars as pl
@@ -98,11 +98,28 @@ _SEPARATORS, _SEPARATOR_WORDS = ",;\t", "comma, semicolon or tab"
 
 @dataclass(frozen=True)
 class Layout:
-    """What the first line of a text table says of the others."""
+    """What the first line of a text table says of the others.
+
+    Attributes
+    ----------
+    header, separator : str
+        The line, and what stands between its names.
+    names : list of str
+        In the file.
+    pair : str
+        The one of them whose fields hold latitude and longitude together; empty where none does.
+    """
 
     header: str
     separator: str
     names: list[str]
+    pair: str = ""
+
+    @property
+    def columns(self) -> list[str]:
+        """Names of the columns that are made of the fields."""
+        named = [(name,) if name != self.pair else _HALVES for name in self.names if name]
+        return [name for each in named for name in each]
 
 
 @dataclass(frozen=True)
@@ -155,7 +172,28 @@ def layout_of(path: Path, lines: pl.DataFrame) -> Layout:
     if separator not in header and len(header.split()) > 2:
         what = f"no {_SEPARATOR_WORDS} in “{header[:60]}”: blanks separate no fields"
         raise FormatError(path, what + _lacking(header), int(lines[LINE][0]), "header")
-    return Layout(header, separator, _names(path, header, separator))
+    layout = Layout(header, separator, _names(path, header, separator))
+    pairs = [name for name in layout.names if name.strip().lower() in _PAIRS]
+    if len(pairs) != 1 or any(word in name.lower() for name in layout.names if name not in pairs for word in ("lat", "lon", "lng")):
+        return layout
+    fields = rows_of(path, layout, lines[1 : 1 + _SAMPLE]).frame[pairs[0]].str.strip_chars()
+    return replace(layout, pair=pairs[0]) if (fields.is_null() | (fields == "") | fields.str.contains(_PAIR)).all() else layout
+
+
+_PAIRS = ("position", "latlon", "lat_lon", "latlng", "lat_lng")
+"""Columns of latitude and longitude in one field, in this order: the export of Flightradar24 has `Position`."""
+_PAIR = r"^[-+]?\d{1,2}(\.\d+)?\s*,\s*[-+]?\d{1,3}(\.\d+)?$"
+_HALVES = ("position latitude", "position longitude")
+_SAMPLE = 20
+"""Rows whose fields show whether they are such. [1]"""
+
+
+def _split(frame: pl.DataFrame, pair: str) -> pl.DataFrame:
+    """A field at its first comma; what is no pair of numbers is refused with its row, as any other position."""
+    if not pair:
+        return frame
+    both = pl.col(pair).str.splitn(",", 2).struct.rename_fields(list(_HALVES)).alias(pair)
+    return frame.with_columns(both).unnest(pair)
 
 
 SOLUTION_HEADER = (
@@ -213,7 +251,8 @@ def rows_of(path: Path, layout: Layout, lines: pl.DataFrame) -> Rows:
     if frame.height != good.height:
         raise FormatError(path, f"not a table: {good.height} lines make {frame.height} rows")
     named = {str(i): name for i, name in enumerate(layout.names) if name}
-    return Rows(frame.select(named.keys()).rename(named).with_columns(good[LINE]), counted.height, refused)
+    frame = _split(frame.select(named.keys()).rename(named), layout.pair)
+    return Rows(frame.with_columns(good[LINE]), counted.height, refused)
 
 
 def _names(path: Path, header: str, separator: str) -> list[str]:
