@@ -11,12 +11,13 @@ import pytest
 
 import navbound
 from navbound.live.sinks import tables
+from navbound.read.tables.epochs import read
 from test_fleet_claims import session
 from test_verdict import table
 from test_who_and_when import DEG_PER_M, SPEED_MPS
 
 N = 60
-KNOT = 0.514444
+KNOT, FOOT = 0.514444, 0.3048
 PLACES: list[dict[str, Any]] = [
     {"type": "adsb_icao"},
     {"type": "adsb_icao_nt"},
@@ -109,6 +110,17 @@ def test_a_list_of_the_details_counts_until_another_source_is_stated(tmp_path: P
     # Where the source of the row is another than its list says, the list counts for the rows of that source.
     contradicting = {"nac_p": 10, "type": "adsb_icao", "mlat": ["lat"]}
     assert reported(trace(tmp_path, ["adsb_icao"] * N, [contradicting, *[None] * (N - 1)]))
+
+
+def test_a_geometric_altitude_of_a_trace_is_no_pressure_altitude(tmp_path: Path) -> None:
+    path = trace(tmp_path, ["adsb_icao"] * N, [None] * N)
+    content = json.loads(path.read_text())
+    for row in content["trace"][::2]:
+        row[6], row[10] = 8, None
+    path.write_text(json.dumps(content))
+    epochs = read(path).epochs
+    assert epochs["altitude_m"].to_list() == [None, 30_000 * FOOT] * (N // 2)
+    assert epochs["est_h_m"].to_list() == pytest.approx([30_000 * FOOT, 30_500 * FOOT] * (N // 2), rel=1e-15)
 
 
 def stating(tmp_path: Path, name: str, value: object) -> tuple[bool, list[str]]:

@@ -15,6 +15,7 @@ def columns_of(source: Source, data: dict[str, Any]) -> dict[str, list[Any]]:
     """Take a trace apart.
 
     Rows are ``[seconds, lat, lon, pressure altitude ft or "ground", kt, deg, flags, ft/min, details, source, geometric altitude ft, ...]``;
+    with the flag 8 the first altitude is geometric, too;
     quality indicators stand in the details, when they were received.
 
     Raises
@@ -36,8 +37,8 @@ def columns_of(source: Source, data: dict[str, Any]) -> dict[str, list[Any]]:
     columns = {name: [row[i] for row in trace] for name, i in names.items()}
     return columns | {
         "unix_time_s": [start + s for s in seconds],
-        "altitude": [None if row[3] == "ground" else row[3] for row in trace],
-        "geoaltitude": [row[10] if len(row) > 10 else None for row in trace],
+        "altitude": [None if row[3] == "ground" or _is_geometric(row) else row[3] for row in trace],
+        "geoaltitude": [_geometric(row) for row in trace],
         "icao24": [str(data.get("icao", source.stem))] * len(trace),
         "callsign": [d.get("flight") for d in details],
         "position_source": [sources.of(row[9] if len(row) > 9 else None, each) for row, each in zip(trace, stated, strict=True)],
@@ -46,3 +47,16 @@ def columns_of(source: Source, data: dict[str, Any]) -> dict[str, list[Any]]:
         "nic": [d.get("nic") for d in details],
         "rc": [d.get("rc") for d in details],
     }
+
+
+_GEOMETRIC = 8
+"""The flag of a row whose altitude is above the ellipsoid and no pressure altitude."""
+
+
+def _is_geometric(row: list[Any]) -> bool:
+    return isinstance(row[6], int) and bool(row[6] & _GEOMETRIC)
+
+
+def _geometric(row: list[Any]) -> Any:
+    stated = row[10] if len(row) > 10 else None
+    return row[3] if stated is None and _is_geometric(row) and row[3] != "ground" else stated
