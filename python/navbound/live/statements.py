@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from navbound.read.checks.statements import BARE_LENGTHS, KINDS, kind_of, speaks_of_integrity
-from navbound.read.tables.quantities import POSITION_TIME_NAMES, QUANTITIES, STATED_QUANTITIES, UNITS
+from navbound.read.quantities import POSITION_TIME_NAMES, QUANTITIES, STATED_QUANTITIES, UNITS
 from navbound.table.columns import COVARIANCE
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import polars as pl
 
 from navbound import _core, status
 from navbound.read.checks.statements import STALE_AFTER_S
-from navbound.read.tables.quantities import POSITION_TIME
+from navbound.read.quantities import POSITION_TIME
 from navbound.table.columns import COVARIANCE
 
 if TYPE_CHECKING:

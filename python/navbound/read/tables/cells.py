@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import polars as pl
 
+from navbound.read.quantities import QUANTITY, UNITS
 from navbound.read.tables.columns import Column
-from navbound.read.tables.quantities import QUANTITY, UNITS
 
 MISSING = r"(?i)^([+-]?nan(\(\w*\))?)?$"
 """Texts of a number that is missing."""

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from navbound.errors import FormatError, InputError
 from navbound.read.checks.statements import NUC, READSB_TYPE, kind_of, speaks_of_accuracy, speaks_of_integrity, speaks_of_level
 from navbound.read.own_positions import READSB
-from navbound.read.tables.quantities import (
+from navbound.read.quantities import (
     FLIGHTRADAR24,
     LEVEL_QUANTITIES,
     OPENSKY_STATES,

@@ -6,8 +6,8 @@ import re
 from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError
+from navbound.read.quantities import QUANTITY, UNITS
 from navbound.read.tables.columns import NO_UNIT, declare
-from navbound.read.tables.quantities import QUANTITY, UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -14,11 +14,11 @@ from navbound.read.checks import levels, stated, statements
 from navbound.read.checks.places import NO_PLACE, Nowhere
 from navbound.read.checks.rejections import Kind, Tally
 from navbound.read.checks.repeats import Repeats, left_out, separate
+from navbound.read.quantities import POSITION_TIME, QUANTITY, UNITS
 from navbound.read.tables.cells import MISSING, largest, no_field, numbers
 from navbound.read.tables.columns import POSITION, Assignment, Column, declare, is_header, position_time
 from navbound.read.tables.further import Further
 from navbound.read.tables.names import Callsigns, one_writing
-from navbound.read.tables.quantities import POSITION_TIME, QUANTITY, UNITS
 from navbound.read.tables.stated_units import is_row_of_units, require_same
 from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, understand, units

@@ -15,9 +15,9 @@ from navbound.read.checks.plausible import Checker, Limits, Plausibility
 from navbound.read.covariance import Claimed, Claims
 from navbound.read.pieces import Frames, PiecedReading, read_pieces
 from navbound.read.pieces.parquet import is_parquet, shape
+from navbound.read.quantities import POSITION_TIME
 from navbound.read.source import LARGE_BYTES, is_text_table
 from navbound.read.speeds import Speeds
-from navbound.read.tables.quantities import POSITION_TIME
 from navbound.run.pieces.flights import Flights
 from navbound.storage.tables import whole_tracks
 from navbound.table.columns import COVARIANCE, HORIZONTAL, VARIANCES
