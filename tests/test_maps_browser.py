@@ -89,6 +89,35 @@ def test_classes_share_out_the_whole_area(page: Page) -> None:
     assert label.startswith("Availability. ")
 
 
+def test_lines_of_availability_part_what_the_values_part_and_can_be_left_out(page: Page, made: maps.Map, tmp_path: Path) -> None:
+    page.select_option("#layer", "share_available")
+    share = 100.0 * made.points["p_available"]
+    levels = [95.0, 99.0, 99.9]
+    # Each parts some cells from others, and some from those beyond the next one.
+    expected = [
+        f"{a:g} %" for a, b in zip(levels, [*levels[1:], 101.0], strict=True) if (share < a).any() and ((share >= a) & (share < b)).any()
+    ]
+    assert expected, "the fixture's map has nothing to part"
+    lines = page.locator(".world-surface path.isoline")
+    assert [line.get_attribute("data-level") for line in lines.all()] == expected
+    keys = page.locator(".world-key.world-line").all_inner_texts()
+    assert [key.strip() for key in keys] == [f"line of {level}" for level in expected]
+    assert all(f"line of {level}" in (page.locator(".world-surface svg").first.get_attribute("aria-label") or "") for level in expected)
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Save SVG").click()
+    download.value.save_as(tmp_path / "lines.svg")
+    saved = [e for e in ElementTree.parse(tmp_path / "lines.svg").iter("{http://www.w3.org/2000/svg}path") if e.get("class") == "isoline"]
+    assert [e.get("d") for e in saved] == [line.get_attribute("d") for line in lines.all()]
+    page.get_by_label("Lines").focus()
+    page.keyboard.press("Space")
+    assert lines.count() == 0
+    page.keyboard.press("Space")
+    assert lines.count() == len(expected)
+    page.select_option("#layer", "pdop_p95")
+    assert lines.count() == 0
+    assert page.get_by_label("Lines").is_hidden()
+
+
 def test_the_saved_picture_says_what_it_shows(page: Page, made: maps.Map, tmp_path: Path) -> None:
     page.select_option("#layer", "pdop_p95")
     with page.expect_download() as download:

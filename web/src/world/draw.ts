@@ -106,12 +106,13 @@ export function centre(lat_rad: number, lon_rad: number): string {
     return `${angle(lat_rad * DEG, "N", "S")}, ${angle(((((lon_rad * DEG + 540) % 360) + 360) % 360) - 180, "E", "W")}`;
 }
 
-/** Units a degree, and where the cells begin: a region higher than wide stands in the middle. */
-function placed(grid: MapGrid, margins: Margins): { k: number; left: number } {
+/** Units a degree and a cell, and where the cells begin and end: a region higher than wide stands in the middle. */
+export function placed(grid: MapGrid, margins: Margins): { k: number; left: number; bottom: number; cellWidth: number; cellHeight: number } {
     const f = frame(grid);
     const room = 1000 - margins.left - RIGHT;
     const k = Math.min(room / (f.width * f.squeeze), margins.most / f.height);
-    return { k, left: margins.left + (room - f.width * f.squeeze * k) / 2 };
+    const step = grid.step_rad * DEG;
+    return { k, left: margins.left + (room - f.width * f.squeeze * k) / 2, bottom: TOP + f.height * k, cellWidth: step * f.squeeze * k, cellHeight: step * k };
 }
 
 /** The whole picture, 1000 units wide, with colours written into it, so that it can leave the page. */

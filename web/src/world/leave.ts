@@ -1,11 +1,14 @@
 // The map as a file of its own: a figure with a heading, the colours and what they mean, as SVG or PNG.
 
 import { el, svg } from "../show/dom.ts";
+import { INK } from "./isolines.ts";
 
 export interface Key {
     fill: string;
+    /** Of a line instead of a class: its dashes. */
+    dashes?: string;
     words: string;
-    /** Share of the area, as text. */
+    /** Share of the area, as text; a line has none. */
     part: string;
 }
 
@@ -37,6 +40,7 @@ export function figure(drawing: SVGSVGElement, keys: Key[], caption: Caption): S
         const y = HEAD + body + 12 + line * LINE;
         return svg("g", {},
             svg("rect", { x, y, width: BOX, height: FONT, fill: key.fill, stroke: muted, "stroke-width": 0.5 }),
+            ...(key.dashes === undefined ? [] : [svg("path", { d: `M${x} ${y + FONT / 2}h${BOX}`, stroke: INK, "stroke-width": 1.4, "stroke-dasharray": key.dashes })]),
             svg("text", { x: x + BOX + 6, y: y + FONT - 1.5, "font-size": FONT, fill: ink }, key.words, svg("tspan", { fill: muted, dx: 5 }, key.part)));
     });
     const note = svg("text", { x: WIDTH - 8, y: height - 6, "font-size": 10, fill: muted, "text-anchor": "end" }, "beside each colour its share of the area · navbound · coastline: Natural Earth; not for navigation");

@@ -6,6 +6,7 @@ import { count, plain, share } from "../show/format.ts";
 import { choose, colour, themeStore, type Choice } from "../show/theme.ts";
 import { areas, classes, NONE_WORDS } from "./classes.ts";
 import { cellAt, centre, NARROW, picture, WIDE } from "./draw.ts";
+import { drawIsolines, HALO, isolines, sample } from "./isolines.ts";
 import { figure, leave, type Key } from "./leave.ts";
 import { layers, type Layer, type MapSummary, type World } from "./records.ts";
 
@@ -35,6 +36,8 @@ function mapPart(world: World, all: Layer[]): HTMLElement {
     const select = el("select", { id: "layer", "aria-label": "What the map shows" }, ...all.map((l) => el("option", { value: l.id }, l.title)));
     const surface = el("div", { class: "world-surface", tabindex: 0, role: "group", "aria-label": "Map; the arrow keys move from cell to cell" });
     const legend = el("div", { class: "world-legend" });
+    const lined = el("input", { type: "checkbox", id: "isolines", checked: true });
+    const linedLabel = el("label", { class: "selector" }, lined, " Lines");
     const meaning = el("p", { class: "world-meaning" });
     const readout = el("p", { class: "world-readout", "aria-live": "polite" });
     const value = valueOf("cell", null, "");
@@ -54,16 +57,23 @@ function mapPart(world: World, all: Layer[]): HTMLElement {
         const sorted = classes(layer);
         const parts = areas(layer, sorted, grid);
         const all = [...sorted.map((c) => ({ fill: c.fill, words: c.words })), { fill: colours().none, words: NONE_WORDS }];
-        const keys = all.map((c, i) => ({ ...c, share: parts[i]! })).filter((c) => c.share > 0).map(({ fill, words, share: part }) => ({ fill, words, part: share(part) }));
-        return { drawing: picture(layer, sorted, grid, world.coastline, colours(), room), keys };
+        const keys: Key[] = all.map((c, i) => ({ ...c, share: parts[i]! })).filter((c) => c.share > 0).map(({ fill, words, share: part }) => ({ fill, words, part: share(part) }));
+        const drawing = picture(layer, sorted, grid, world.coastline, colours(), room);
+        const lines = lined.checked ? isolines(layer, grid) : [];
+        drawing.append(...drawIsolines(lines, grid, room));
+        return { drawing, keys: [...keys, ...lines.map(({ words, dashes }) => ({ fill: HALO, words: `line of ${words}`, part: "", dashes }))] };
     };
     const draw = (): void => {
         const layer = current();
         const { drawing, keys } = drawn(layer, margins());
-        drawing.setAttribute("aria-label", `${layer.title}. ${keys.map((k) => `${k.words}: ${k.part} of the area`).join("; ")}`);
+        drawing.setAttribute("aria-label", `${layer.title}. ${keys.map((k) => (k.dashes === undefined ? `${k.words}: ${k.part} of the area` : k.words)).join("; ")}`);
         surface.replaceChildren(drawing);
-        meaning.textContent = `${headed(layer)}; beside each colour its share of the area`;
-        legend.replaceChildren(...keys.map((k) => el("span", { class: "world-key" }, el("i", { style: `background:${k.fill}` }), k.words, el("span", { class: "also" }, k.part))));
+        linedLabel.hidden = isolines(layer, grid).length === 0;
+        const between = keys.some((k) => k.dashes !== undefined) ? "; lines between the middles of the cells, linear" : "";
+        meaning.textContent = `${headed(layer)}; beside each colour its share of the area${between}`;
+        legend.replaceChildren(...keys.map((k) => (k.dashes === undefined
+            ? el("span", { class: "world-key" }, el("i", { style: `background:${k.fill}` }), k.words, el("span", { class: "also" }, k.part))
+            : el("span", { class: "world-key world-line" }, sample(k.dashes), k.words))));
         read();
     };
     const point = (event: PointerEvent): void => {
@@ -81,6 +91,7 @@ function mapPart(world: World, all: Layer[]): HTMLElement {
         read();
     });
     select.addEventListener("change", draw);
+    lined.addEventListener("change", draw);
     matchMedia(`(width < ${NARROW_PX}px)`).addEventListener("change", draw);
     // A file is read on a desk: it has the wide margins, whatever screen it was saved on.
     const save = (kind: "svg" | "png"): void => {
@@ -89,7 +100,7 @@ function mapPart(world: World, all: Layer[]): HTMLElement {
     };
     themeStore().watch(draw);
     return el("section", { id: "world", class: "chart" },
-        el("div", { class: "chart-head" }, el("h2", {}, "Map"), el("div", { class: "map-controls" }, el("label", { class: "selector" }, "Shown ", select), button("Save PNG", {}, () => save("png")), button("Save SVG", {}, () => save("svg")))),
+        el("div", { class: "chart-head" }, el("h2", {}, "Map"), el("div", { class: "map-controls" }, el("label", { class: "selector" }, "Shown ", select), linedLabel, button("Save PNG", {}, () => save("png")), button("Save SVG", {}, () => save("svg")))),
         surface, meaning, legend, readout);
 }
 
