@@ -25,6 +25,7 @@ import { cursorBar } from "./panel/cursorbar.ts";
 import { indicatorsOf } from "./panel/kpi-verdict.ts";
 import { procedures } from "./panel/procedure.ts";
 import { performance as performanceReport } from "./panel/performance.ts";
+import { spanShown } from "./panel/shown.ts";
 import { smallPrint } from "./panel/smallprint.ts";
 import { alertLimits, crossTrack, events, faults, methods, phases, rejections, tracks } from "./panel/tables.ts";
 import { verdict } from "./panel/verdict.ts";
@@ -107,11 +108,12 @@ class Page {
         const rolls = payload.summary.operation === "ground";
         const explained = (part: (typeof PARTS)[number]): boolean => this.series === null && !(rolls && part.aloft);
         const drawn = PARTS.filter((part) => explained(part) || part.needs.some((name) => table.has(name)));
-        this.ends = [...drawn.map(({ component, host }) => component(this[host], now)), filter(this.charts, now), gnss(this.charts, now), cursorBar(this.bar, now)];
+        const happened = eventWindow(now);
+        this.ends = [spanShown(this.charts, now, happened), ...drawn.map(({ component, host }) => component(this[host], now)), filter(this.charts, now), gnss(this.charts, now), cursorBar(this.bar, now)];
         const worst = payload.summary.verdict.worst_accuracy;
         now.cursor.set(worst !== null && worst.track === head.track ? indexAt(worst.time_ns, now) : Math.floor(table.n / 2));
         // What happened is shown first; the whole is one key away.
-        now.window.set(eventWindow(now));
+        now.window.set(happened);
         if (this.series !== null) this.ends.push(linkByTime({ table, cursor: now.cursor, width_s: 0 }, this.series));
         this.trackTable.refresh();
     }

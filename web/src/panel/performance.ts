@@ -18,6 +18,7 @@ import { indicatorsOf } from "./kpi-verdict.ts";
 import { levelTable, spreadTable } from "./levels.ts";
 import { serviceLog } from "./service.ts";
 import { liveTable, sortable, type Column } from "./sortable.ts";
+import { spanShown } from "./shown.ts";
 import { subsetTable } from "./subsets.ts";
 
 /** Returns its cursor, for others to follow; null where the run has no performance record. */
@@ -112,7 +113,7 @@ class Section {
                 bins: b, level: chosen.level, limit_m: b.axis === "h" ? chosen.level.hal_m : chosen.level.val_m!, experimental: record.experimental, theme: this.theme,
                 counts: (b.variant === "stanford" ? chosen.stanford : record.subsets?.stanford[chosen.level.id])?.find((c) => c.axis === b.axis) ?? null,
             })),
-            protection(this.charts, now, record, chosen, "h"), protection(this.charts, now, record, chosen, "v"), causes(this.charts, now, record),
+            spanShown(this.charts, now), protection(this.charts, now, record, chosen, "h"), protection(this.charts, now, record, chosen, "v"), causes(this.charts, now, record),
         ];
         const available = spreadTable("spread-available", `Errors and protection levels while ${chosen.level.id} was available`, chosen.available, this.payload, record.experimental);
         if (available !== null) this.charts.append(available);
