@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import shutil
 from collections import Counter
@@ -13,10 +14,11 @@ import pytest
 
 import navbound
 from navbound import sbas
-from navbound.records.performance import MessageCount, ServiceLog, UdreHistory
+from navbound.records.performance import GridPoint, MessageCount, ServiceLog, UdreHistory
 from navbound.report import render
+from navbound.report.coast import grid_region
 from navbound.run.evaluate import service
-from navbound.sbas import Decoded
+from navbound.sbas import Decoded, grid
 from test_report_browser import FLAGS, _open
 
 if TYPE_CHECKING:
@@ -57,14 +59,53 @@ def test_a_message_of_another_mask_or_before_any_says_nothing() -> None:
 
 def test_grid_points_count_by_their_last_indicator_until_they_are_too_old() -> None:
     mask = {"bands": 1, "band": 4, "iodi": 1, "point": list(range(101, 118))}
-    full = {"band": 4, "iodi": 1, "block": 0, "givei": [3] * 14 + [15]}
-    rest = {"band": 4, "iodi": 1, "block": 1, "givei": [7, 8, *[0] * 13]}
-    other = {"band": 4, "iodi": 2, "block": 0, "givei": [1] * 15}
+    metre = [1.0] * 15
+    full = {"band": 4, "iodi": 1, "block": 0, "givei": [3] * 14 + [15], "delay_m": metre}
+    rest = {"band": 4, "iodi": 1, "block": 1, "givei": [7, 8, *[0] * 13], "delay_m": metre}
+    other = {"band": 4, "iodi": 2, "block": 0, "givei": [1] * 15, "delay_m": metre}
     _, give, n_points = histories(sent((0, 18, mask), (1, 26, full), (12, 26, rest), (13, 26, other)), bin_s=310)
     assert n_points == 17
     # Of block 1 the mask has two points. After 600 s nothing counts: message 26 of 12 s is too old at 620 s no less than that of 1 s.
     at = {3: 14, 15: 1, 7: 1, 8: 1}
     assert give == [[at.get(k, 0) for k in range(16)], [0] * 16, [0] * 16]
+
+
+def test_every_point_has_its_place_and_its_state_at_the_end_of_each_bin() -> None:
+    # Corners of the table: of band 4 the numbers 101 and 128, of band 9 the last.
+    masks = [(0, 18, {"bands": 2, "band": 4, "iodi": 1, "point": [101, 128]}), (0, 18, {"bands": 2, "band": 9, "iodi": 1, "point": [192]})]
+    none = [0.0] * 12
+
+    def delays(band: int, givei: list[int], delay_m: list[float | None]) -> dict[str, Any]:
+        rest = [0] * (15 - len(givei))
+        return {"band": band, "iodi": 1, "block": 0, "givei": givei + rest, "delay_m": [*delay_m, *none, 0.0, 0.0, 0.0][:15]}
+
+    messages = [
+        *masks,
+        (1, 26, delays(4, [10, 15], [2.0, 2.0])),
+        (12, 26, delays(4, [10, 2], [None, 2.0])),
+        (13, 26, delays(9, [14], [9.0])),
+    ]
+    made = service._Histories(0, 10 * NS, 63)
+    for message in sent(*messages):
+        made.take(message)
+    _, give, _ = made.end()
+    grid = {(round(math.degrees(p.lat_rad)), round(math.degrees(p.lon_rad))): p.states for p in made.grid()}
+    # Ten seconds a bin; 600 s after 12 s and 13 s, with the bin that ends at 620 s, both are too old.
+    assert grid == {(-75, 0): "A" + "X" * 60 + "..", (85, 0): "F" + "2" * 60 + "..", (85, 150): "." + "E" * 60 + ".."}
+    # A point that must not be used counts as one that is not monitored.
+    assert (give[0][10], give[0][15], give[1][15], give[1][2], give[1][14], sum(give[62])) == (1, 1, 1, 1, 1, 0)
+
+
+def test_points_of_the_grid_are_where_the_standard_has_them() -> None:
+    """Corners of the table of bands, with the number of points of each band."""
+    table = {band: grid.points(band) for band in range(11)}
+    assert [len(points) for points in table.values()] == [*[201] * 8, 200, 192, 192]
+    corners = {
+        (0, 1): (-75, -180), (0, 28): (85, -180), (0, 29): (-55, -175), (0, 201): (55, -145), (1, 1): (-85, -140), (1, 28): (75, -140),
+        (4, 101): (-75, 0), (4, 128): (85, 0), (7, 151): (-85, 130), (8, 1): (-75, 140), (8, 200): (55, 175), (9, 1): (60, -180),
+        (9, 73): (65, -180), (9, 181): (85, -180), (9, 192): (85, 150), (10, 181): (-85, -170), (10, 192): (-85, 160),
+    }  # fmt: skip
+    assert {key: table[key[0]][key[1] - 1] for key in corners} == corners
 
 
 def test_gaps_are_time_outs_only_where_no_other_message_says_the_same() -> None:
@@ -126,8 +167,28 @@ def test_a_recorded_hour_is_counted_as_its_lines_say(shared_data: Path) -> None:
                 worst[prn] = max(worst.get(prn, 0), int(bits[174 + 4 * k : 178 + 4 * k], 2))
     shown = {each.sv: max(u for u in each.worst if u is not None) for each in log.udre}
     assert {sv: u for sv, u in shown.items() if sv <= "G26"} == {f"G{prn:02d}": worst[prn] for prn in worst if f"G{prn:02d}" in shown}
+    # The grid of every bin counts what the table counts, point by point.
+    states = [Counter(point.states[k] for point in log.grid) for k in range(len(log.give))]
+    assert all(counts["X"] + counts["F"] == log.give[k][15] for k, counts in enumerate(states))
+    assert all(counts[f"{i:X}"] == log.give[k][i] for k, counts in enumerate(states) for i in range(15))
+    assert Counter(point.states[-1] for point in log.grid) == _last_states(lines)
     # What is not shown was never monitored.
     assert all(worst[prn] >= service.NOT_MONITORED for prn in worst if f"G{prn:02d}" not in shown)
+
+
+def _last_states(lines: list[list[str]]) -> Counter[str]:
+    """Read from the text: masks behind 14 + 4 bits, blocks of 13 bits for a point behind 22, the issue of the mask behind those."""
+    masks: dict[str, tuple[str, list[int]]] = {}
+    last: dict[tuple[str, int], str] = {}
+    for line in lines:
+        bits = f"{int(line[8], 16):0{4 * len(line[8])}b}"
+        if line[7] == "18":
+            masks[bits[18:22]] = bits[22:24], [k for k in range(201) if bits[24 + k] == "1"]
+        if line[7] == "26" and masks.get(bits[14:18], ("", []))[0] == bits[217:219]:
+            for k, point in enumerate(masks[bits[14:18]][1][15 * int(bits[18:22], 2) :][:15]):
+                delay, indicator = bits[22 + 13 * k : 31 + 13 * k], int(bits[31 + 13 * k : 35 + 13 * k], 2)
+                last[bits[14:18], point] = "X" if delay == "1" * 9 else f"{indicator:X}"
+    return Counter(last.get((band, point), ".") for band, (_, points) in masks.items() for point in points)
 
 
 CHROMIUM = shutil.which("chromium")
@@ -160,6 +221,10 @@ def log() -> ServiceLog:
         udre=[UdreHistory(sv="G03", worst=[5, 12, 15]), UdreHistory(sv="G07", worst=[5, None, 5])],
         give=[*give[:2], [0] * 3 + [14] + [0] * 11 + [3]],
         n_points=17,
+        grid=[
+            GridPoint(lat_rad=math.radians(lat), lon_rad=math.radians(lon), states=states)
+            for lat, lon, states in [(50, 175, "35X"), (50, -180, ".3F"), (55, -175, "..E")]
+        ],
         words=[],
     )
 
@@ -192,3 +257,66 @@ def test_the_page_shows_types_udre_and_grid(browser: Browser, report: Path) -> N
     assert "14 of 17 points of the grid are monitored" in str(page.locator("#give").get_attribute("aria-label"))
     assert page.evaluate("document.documentElement.scrollWidth") <= 420
     page.context.close()
+
+
+def test_the_map_shows_the_grid_as_it_stood_at_the_cursor(browser: Browser, report: Path) -> None:
+    page = _open(browser, report)
+    points = page.locator("#grid-map [data-state]")
+
+    def move_to(second: int) -> None:
+        page.locator("#bucket").evaluate("(slider, i) => { slider.value = i; slider.dispatchEvent(new Event('input')); }", second)
+
+    # Twenty seconds a bin; row k of the table, of 09:00:00 UTC and k seconds, is 18 + k seconds after the first message.
+    for second, states in ((0, "3.."), (5, "53."), (25, "XFE")):
+        move_to(second)
+        assert "".join(points.evaluate_all("all => all.map((e) => e.dataset.state)")) == states
+    keys = page.locator("#grid-map .key .value").evaluate_all("all => all.map((e) => [e.dataset.key, e.dataset.value])")
+    assert keys == [["grid_4", "1"], ["grid_F", "1"], ["grid_X", "1"]]
+    assert "15 and 45 m: 1; not monitored: 1; not to be used: 1" in str(
+        page.locator("#grid-map .grid-surface svg").get_attribute("aria-label")
+    )
+    page.locator("#grid-map summary").focus()
+    page.keyboard.press("Enter")
+    assert page.locator("#grid-map tbody tr").all_inner_texts() == [
+        "50° N, 175° E\tnot to be used",
+        "50° N, 180° W\tnot monitored",
+        "55° N, 175° W\tGIVE 45 m (indicator 14)",
+    ]
+    # Across the antimeridian each point is 5 degrees east of the one before.
+    x = points.evaluate_all("all => all.map((e) => Number(/translate\\(([-0-9.]+)/.exec(e.getAttribute('transform'))[1]))")
+    assert x[1] - x[0] > 10
+    # Places are written to a tenth of the picture's units.
+    assert x[2] - x[1] == pytest.approx(x[1] - x[0], abs=0.2)
+    # Of the last 18 rows there is no message.
+    move_to(45)
+    assert "".join(points.evaluate_all("all => all.map((e) => e.dataset.state)")) == "..."
+    assert "No message of the log is of the time under the cursor" in page.locator("#grid-map").inner_text()
+    page.context.close()
+
+
+def test_the_region_of_a_grid_begins_after_its_widest_gap() -> None:
+    def region(*places: tuple[int, int]) -> tuple[float, float, float, float] | None:
+        return grid_region([GridPoint(lat_rad=math.radians(lat), lon_rad=math.radians(lon), states="") for lat, lon in places])
+
+    assert region((20, -40), (65, 45)) == (15, -45.0, 70, 50.0)
+    assert region((50, 175), (50, -180), (55, -175)) == (45, 170.0, 60, 190.0)
+    assert region((-85, 10), (85, 10)) == (-90, 5.0, 90, 15.0)
+    # All around the Earth it is one turn, no more.
+    assert region(*((0, lon) for lon in range(-180, 180, 5))) == (-5, -182.5, 5, 177.5)
+    assert region() is None
+
+
+def test_give_of_an_indicator_agrees_with_the_variances_of_the_core() -> None:
+    """Two columns of one table of the standard: the variance is that of an error whose 99.9 % (3.29 deviations) is the GIVE."""
+    page = (ROOT / "web/src/panel/gridstates.ts").read_text(encoding="utf-8")
+    core = (ROOT / "crates/core/src/bound/sbas/model.rs").read_text(encoding="utf-8")
+    give, variances = (
+        re.search(pattern, text) for pattern, text in ((r"GIVE_M = \[([^\]]*)\]", page), (r"GIVE_M2: \[f64; 15\] =\s*\[([^\]]*)\]", core))
+    )
+    assert give is not None
+    assert variances is not None
+    pairs = [tuple(map(float, pair)) for pair in zip(give[1].split(","), variances[1].split(","), strict=True)]
+    assert len(pairs) == 15
+    for give_m, variance_m2 in pairs:
+        # The standard prints the variance to four decimals, and that of 0.3 m as 0.0084 for 0.00831.
+        assert (give_m / 3.29) ** 2 == pytest.approx(variance_m2, abs=1e-4, rel=2e-5)

@@ -374,6 +374,14 @@ export interface UdreHistory {
     worst: (number | null)[];
 }
 
+/** The GIVE of a point of the ionospheric grid over time. */
+export interface GridPoint {
+    lat_rad: number;
+    lon_rad: number;
+    /** One sign a bin, at its end: `0` to `9` and `A` to `E` the GIVE indicator 0 to 14, `F` not monitored (15), `X` not to be used, `.` not sent or older than its time-out. */
+    states: string;
+}
+
 /** The messages of one geostationary satellite over the epochs of a run. */
 export interface ServiceLog {
     prn: number;
@@ -388,10 +396,12 @@ export interface ServiceLog {
     bin_ns: number;
     /** Of satellites of the mask that were monitored at some time. */
     udre: UdreHistory[];
-    /** Of each bin how many points of the grid mask had each GIVE indicator, 0 to 15, at its end; those that were too old count as none. */
+    /** Of each bin how many points of the grid mask had each GIVE indicator, 0 to 15, at its end; those not to be used count with 15, those that were too old as none. */
     give: number[][];
     /** Points of the grid masks at the end. */
     n_points: number;
+    /** Points that were in a mask at the end of a bin. Empty in a record that was written before there was one. */
+    grid: GridPoint[];
     words: string[];
 }
 

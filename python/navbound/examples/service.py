@@ -10,13 +10,12 @@ import numpy as np
 
 from navbound import gnss
 from navbound.examples.station import Station, measure
+from navbound.sbas import grid as iono_grid
 from navbound.write.sbas import Sent
 
 if TYPE_CHECKING:
     from navbound.examples.station import StationRecording
-
-    Points = list[tuple[int, int]]
-    """Latitude and longitude [deg]."""
+    from navbound.sbas.grid import Points
 
 PRN = 120
 _NS = 10**9
@@ -151,7 +150,7 @@ class _Slow:
             none, two_minutes = (0, 10), (120, 9)
             return 10, [none, none, none, two_minutes, none, two_minutes, none, none, two_minutes, (0, 6), (63, 10), (300, 9), none, (0, 9)]
         if which == 18:
-            points = _points(part)
+            points = iono_grid.points(part)
             return 18, [(len(_BANDS), 4), (part, 4), (0, 2), *((int(_served(part, each)), 1) for each in points)]
         if which == 25:
             return 25, self._long_term(part, time_s)
@@ -207,24 +206,6 @@ def _mapped(el_rad: float) -> float:
     return float(np.sqrt(1.0 - (_EARTH_M * np.cos(el_rad) / (_EARTH_M + _SHELL_M)) ** 2))
 
 
-def _points(band: int) -> Points:
-    """Grid points of a band in the order of its mask (RTCA DO-229, table of bands; standard); of the polar ones the northern rows.
-
-    Written once more than in the reader, as the parity is: a test compares what is sent with the table.
-    """
-    if band == 9:
-        rows = ((60, 5, 72), (65, 10, 36), (70, 10, 36), (75, 10, 36), (85, 30, 12))
-        return [(lat, -180 + step * k) for lat, step, n in rows for k in range(n)]
-    points: Points = []
-    for lon in range(-180 + 40 * band, -140 + 40 * band, 5):
-        lats = list(range(-55, 60, 5))
-        if lon % 10 == 0:
-            lats = [-75, -65, *lats, 65, 75]
-        lats = [*([-85] if (lon + 140) % 90 == 0 else []), *lats, *([85] if (lon + 180) % 90 == 0 else [])]
-        points += [(lat, lon) for lat in lats]
-    return points
-
-
 def _served(band: int, point: tuple[int, int]) -> bool:
     return _FROM[0] <= point[0] <= _TO[0] and _FROM[1] <= point[1] <= _TO[1] and (band == 9 or point[0] <= 55)
 
@@ -233,6 +214,6 @@ def _blocks() -> list[tuple[int, int, Points]]:
     """Band, block and points of every message 26."""
     blocks = []
     for band in _BANDS:
-        served = [point for point in _points(band) if _served(band, point)]
+        served = [point for point in iono_grid.points(band) if _served(band, point)]
         blocks += [(band, k // _BLOCK, served[k : k + _BLOCK]) for k in range(0, len(served), _BLOCK)]
     return blocks

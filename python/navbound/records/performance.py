@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import Literal
 
+from pydantic import Field
+
 from navbound.records.base import Record
 
 Axis = Literal["h", "v"]
@@ -280,6 +282,16 @@ class UdreHistory(Record):
     """The largest of each bin: 14 is not monitored, 15 is not to be used; None where none was sent."""
 
 
+class GridPoint(Record):
+    """The GIVE of a point of the ionospheric grid over time."""
+
+    lat_rad: float
+    lon_rad: float
+    states: str
+    """One sign a bin, at its end: `0` to `9` and `A` to `E` the GIVE indicator 0 to 14, `F` not monitored (15), `X` not to be used, `.`
+    not sent or older than its time-out."""
+
+
 class ServiceLog(Record):
     """The messages of one geostationary satellite over the epochs of a run."""
 
@@ -296,9 +308,12 @@ class ServiceLog(Record):
     udre: list[UdreHistory]
     """Of satellites of the mask that were monitored at some time."""
     give: list[list[int]]
-    """Of each bin how many points of the grid mask had each GIVE indicator, 0 to 15, at its end; those that were too old count as none."""
+    """Of each bin how many points of the grid mask had each GIVE indicator, 0 to 15, at its end; those not to be used count with 15, those
+    that were too old as none."""
     n_points: int
     """Points of the grid masks at the end."""
+    grid: list[GridPoint] = Field(default=[])
+    """Points that were in a mask at the end of a bin. Empty in a record that was written before there was one."""
     words: list[str]
 
 

@@ -16,8 +16,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from navbound.records.performance import GridPoint
+
 REACH_RAD = 6000.0 / 6.371e6
 """An airport this near to the end of a track is where it lies. Provenance: ours."""
+_CELL_DEG = 5.0
+"""Of the ionospheric grid. [deg]"""
 MOST_AIRPORTS = 40
 """More names than this are a list, no map. [1]"""
 
@@ -122,3 +126,17 @@ def _clipped(ring: NDArray[np.float64], low: tuple[float, float], high: tuple[fl
         both = np.stack([ring, crossing], axis=1)
         ring = both[np.stack([inside, crosses], axis=1)]
     return ring
+
+
+def grid_region(points: Sequence[GridPoint]) -> tuple[float, float, float, float] | None:
+    """South, west, north, east of a map of points, a cell of 5 degrees around them; it begins after the widest gap of longitudes. [deg]."""
+    if not points:
+        return None
+    lats = np.degrees([point.lat_rad for point in points])
+    lons = np.unique((np.rint(np.degrees([point.lon_rad for point in points])) + 180.0) % 360.0 - 180.0)
+    gaps = np.diff(np.append(lons, lons[0] + 360.0))
+    # Of gaps that are the same the one across the antimeridian.
+    west = float(lons[-int(gaps[::-1].argmax()) % len(lons)])
+    south, north = max(-90.0, float(lats.min()) - _CELL_DEG), min(90.0, float(lats.max()) + _CELL_DEG)
+    beside = min(_CELL_DEG, float(gaps.max()) / 2)
+    return round(south), west - beside, round(north), west + 360.0 - float(gaps.max()) + beside

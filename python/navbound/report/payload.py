@@ -13,7 +13,7 @@ import polars as pl
 
 from navbound.gnss.receivers import FATES
 from navbound.report import packing, sky
-from navbound.report.coast import airports, clip_coastline, clip_land
+from navbound.report.coast import airports, clip_coastline, clip_land, grid_region
 from navbound.storage.tables import pieces
 from navbound.table import lookup
 from navbound.time import GPS_EPOCH_UNIX_NS, utc_offset_s
@@ -133,8 +133,16 @@ def _records(summary: Summary, record: RunRecord, epochs: Table, events: pl.Data
         "charts": lookup.drawn(epochs.columns),
         "coastline": clip_coastline(*region),
         "land": clip_land(*region),
+        "service_map": _service_map(summary),
         "airports": [w.model_dump(mode="json") for w in airports(_ends(epochs, summary), waypoints)],
     }
+
+
+def _service_map(summary: Summary) -> dict[str, Any] | None:
+    """Region and coast of the ionospheric grid of a service, which reaches far beyond the track."""
+    service = summary.performance.service if summary.performance is not None else None
+    region = grid_region(service.grid) if service is not None else None
+    return None if region is None else {"region_deg": region, "coastline": clip_coastline(*region)}
 
 
 MOST_ROWS = 200_000

@@ -42,6 +42,8 @@ export interface Payload {
     coastline: number[][];
     /** Rings of land and of the lakes in it, likewise. */
     land: number[][];
+    /** South, west, north and east of the grid of an augmentation service, and its coastline; null where a run was corrected by none. */
+    service_map: { region_deg: [number, number, number, number]; coastline: number[][] } | null;
     /** Airports at the ends of tracks. */
     airports: Waypoint[];
     tracks: PackedTrack[];

@@ -55,7 +55,7 @@ class Section {
         // Where nothing else was asked, the verdict above has said what this section would begin with.
         const alone = indicatorsOf(payload) !== null;
         host.append(el("section", { id: "performance" }, el("h2", {}, alone ? "Indicators" : `Performance: ${record.title}`), !alone && record.experimental !== "" ? el("p", {}, el("span", { class: "tag" }, record.experimental)) : null, alone ? null : headline(record), scope(record, payload), levelTable(record),
-            spreadTable("spread", "Errors and protection levels over the epochs with a solution", record.axes, payload, record.experimental), this.choices(), this.timeline(), this.charts, subsetTable(record, payload), serviceLog(record, payload), events, days(record, payload), ...(alone ? [] : record.notes.map((n) => el("p", { class: "note" }, n)))));
+            spreadTable("spread", "Errors and protection levels over the epochs with a solution", record.axes, payload, record.experimental), this.choices(), this.timeline(), this.charts, subsetTable(record, payload), serviceLog(record, payload, this.at), events, days(record, payload), ...(alone ? [] : record.notes.map((n) => el("p", { class: "note" }, n)))));
         this.at.cursor.set(Math.floor(this.table.n / 2));
         this.draw();
     }

@@ -2,10 +2,12 @@
 
 import "./service.css";
 import { utcOf } from "../data/events.ts";
+import type { Cursor } from "../data/link.ts";
 import type { MessageCount, Performance, ServiceLog } from "../records.gen.ts";
 import type { Payload } from "../data/records.ts";
 import { el, svg } from "../show/dom.ts";
 import { clock, count, date, duration, NONE } from "../show/format.ts";
+import { gridMap } from "./gridmap.ts";
 import { sortable, type Column } from "./sortable.ts";
 
 const WIDTH = 960;
@@ -19,7 +21,7 @@ const DO_NOT_USE = 15;
 const EN_ROUTE = 12;
 const HOURS = 6;
 
-export function serviceLog(record: Performance, payload: Payload): HTMLElement | null {
+export function serviceLog(record: Performance, payload: Payload, cursor: Cursor): HTMLElement | null {
     const log = record.service;
     if (log === null || log === undefined) return null;
     const at = (ns: number): string => `${date(utcOf(ns, payload))} ${clock(utcOf(ns, payload))}`;
@@ -28,7 +30,7 @@ export function serviceLog(record: Performance, payload: Payload): HTMLElement |
     const tests = log.types.find(({ type }) => type === 0)?.n ?? 0;
     const stop = tests === 0 ? "" : ` Message 0, by which nothing of the service is to be used, was received ${tests === 1 ? "once" : `${count(tests)} times`}.`;
     const words = `PRN ${log.prn}, ${at(log.first_ns)} to ${at(log.last_ns)} UTC: ${count(log.n_messages)} messages, ${silence}. ${out === 0 ? "No type was older than its time-out." : `At ${count(out)} ${out === 1 ? "time" : "times"} data of a type were older than the time-out of a precision approach.`}${stop}`;
-    return el("section", { id: "service" }, el("h3", {}, "Messages of the service"), el("p", {}, words), types(log), udre(log, payload), give(log, payload));
+    return el("section", { id: "service" }, el("h3", {}, "Messages of the service"), el("p", {}, words), types(log), udre(log, payload), give(log, payload), gridMap(log, payload, cursor));
 }
 
 function types(log: ServiceLog): HTMLElement {
@@ -89,7 +91,7 @@ function give(log: ServiceLog, payload: Payload): HTMLElement | null {
     const known = last.reduce((a, b) => a + b, 0);
     const spoken = `At the end ${count(known - last[15]!)} of ${count(log.n_points)} points of the grid are monitored.`;
     return el("figure", { class: "chart" }, el("div", { class: "chart-head" }, el("h3", {}, "GIVE of the grid")),
-        el("figcaption", {}, `Points of the grid by their indicator, 0 to 14, at the end of each ${duration(log.bin_ns / 1e9)}: the stronger, the more of up to ${count(most)}. 15 is not monitored. ${spoken}`),
+        el("figcaption", {}, `Points of the grid by their indicator, 0 to 14, at the end of each ${duration(log.bin_ns / 1e9)}: the stronger, the more of up to ${count(most)}. 15 is not monitored or not to be used. ${spoken}`),
         el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "GIVE of the grid" }, picture(log, payload, "give", rows, spoken)));
 }
 

@@ -11,7 +11,7 @@ export interface Class {
 }
 
 /** Dark to bright, distinguishable without colour (viridis, CC0). */
-const BRIGHT = ["#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d", "#a0da39", "#fde725"];
+export const BRIGHT = ["#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d", "#a0da39", "#fde725"];
 /** Beyond the limit: another family. */
 const BEYOND = ["#c9a27c", "#8a5a33"];
 const SHARES = [50, 90, 95, 99, 99.5, 99.9];

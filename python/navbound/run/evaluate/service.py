@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from navbound import sbas
-from navbound.records.performance import MessageCount, ServiceLog, UdreHistory
+from navbound.records.performance import GridPoint, MessageCount, ServiceLog, UdreHistory
+from navbound.sbas import grid as iono_grid
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -24,6 +26,9 @@ MOST_BINS, LEAST_BIN_S = 240, 12
 BEFORE_NS = 1200 * NS
 """Masks that were sent before the first epoch count for as long as the longest time-out of them."""
 NOT_MONITORED = 14
+_GIVEI_NOT_MONITORED = 15
+_DO_NOT_USE, _UNKNOWN = "X", "."
+"""Signs of `GridPoint.states` that are no indicator."""
 TYPES: dict[int, tuple[str, int | None]] = {
     0: ("not for use: test", None),
     1: ("mask of satellites", 600),
@@ -96,6 +101,7 @@ def service_log(messages: Messages, first_ns: int) -> ServiceLog:
         udre=udre,
         give=give,
         n_points=n_points,
+        grid=histories.grid(),
         words=words,
     )
 
@@ -141,7 +147,8 @@ class _Histories:
         self._mask: tuple[int, list[int]] | None = None
         self._udre: dict[int, list[int | None]] = {}
         self._grid: dict[int, tuple[int, list[int]]] = {}
-        self._give: dict[tuple[int, int], tuple[int, int]] = {}
+        self._give: dict[tuple[int, int], tuple[str, int]] = {}
+        self._states: dict[tuple[int, int], list[str]] = {}
         self._counts: list[list[int]] = []
 
     def take(self, message: Decoded) -> None:
@@ -174,19 +181,33 @@ class _Histories:
         iodi, points = self._grid.get(band, (-1, []))
         if fields["iodi"] != iodi:
             return
-        for k, indicator in enumerate(fields["givei"]):
+        for k, (indicator, delay_m) in enumerate(zip(fields["givei"], fields["delay_m"], strict=True)):
             index = _BLOCK * fields["block"] + k
             if index < len(points):
-                self._give[band, points[index]] = indicator, message.time_ns
+                self._give[band, points[index]] = _DO_NOT_USE if delay_m is None else f"{indicator:X}", message.time_ns
 
     def _close(self) -> None:
         """The grid at the end of a bin."""
         end_ns = self._first_ns + (len(self._counts) + 1) * self._bin_ns
         counts = [0] * 16
-        for (band, point), (indicator, sent_ns) in self._give.items():
-            if point in self._grid[band][1] and end_ns - sent_ns <= _GRID_S * NS:
-                counts[indicator] += 1
+        for band, (_, points) in self._grid.items():
+            for point in points:
+                sign, sent_ns = self._give.get((band, point), (_UNKNOWN, end_ns))
+                if end_ns - sent_ns > _GRID_S * NS:
+                    sign = _UNKNOWN
+                self._states.setdefault((band, point), [_UNKNOWN] * self._n)[len(self._counts)] = sign
+                if sign != _UNKNOWN:
+                    counts[_GIVEI_NOT_MONITORED if sign == _DO_NOT_USE else int(sign, 16)] += 1
         self._counts.append(counts)
+
+    def grid(self) -> list[GridPoint]:
+        """The points of all masks, from south to north and west to east; those that are none of the standard's table are left out."""
+        placed = []
+        for (band, point), signs in self._states.items():
+            table = iono_grid.points(band)
+            if 1 <= point <= len(table):
+                placed.append((table[point - 1], "".join(signs)))
+        return [GridPoint(lat_rad=math.radians(lat), lon_rad=math.radians(lon), states=states) for (lat, lon), states in sorted(placed)]
 
     def end(self) -> tuple[list[UdreHistory], list[list[int]], int]:
         """What there was: indicators of satellites that were monitored, counts of grid points, points of the masks."""
