@@ -30,6 +30,8 @@ export function contours(values: Float64Array, grid: MapGrid, level: number): Li
     for (let row = 0; row < grid.n_lat - 1; row++) {
         for (let column = wraps ? -1 : 0; column < grid.n_lon - (wraps ? 0 : 1); column++) {
             const corners = [at(column, row), at(column + 1, row), at(column + 1, row + 1), at(column, row + 1)] as const;
+            // Most squares lie on one side, and a fine map has a million of them.
+            if (corners.every((v) => v >= level) || !corners.some((v) => v >= level)) continue;
             for (const [from, to] of square(column, row, corners, level)) meet(from, to);
         }
     }

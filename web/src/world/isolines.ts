@@ -21,11 +21,17 @@ export interface Isoline {
     lines: Line[];
 }
 
-/** Lines of the levels that the values of an availability tell apart; none of another layer. */
+const made = new WeakMap<Layer, Isoline[]>();
+
+/** Lines of the levels that the values of an availability tell apart; none of another layer. They are worked out once. */
 export function isolines(layer: Layer, grid: MapGrid): Isoline[] {
     if (layer.unit !== "%") return [];
+    const known = made.get(layer);
+    if (known !== undefined) return known;
     const drawn = worthDrawing(layer.values, LEVELS.map(([percent]) => percent));
-    return LEVELS.filter(([percent]) => drawn.includes(percent)).map(([percent, dashes]) => ({ words: `${percent} %`, dashes, lines: contours(layer.values, grid, percent) }));
+    const lines = LEVELS.filter(([percent]) => drawn.includes(percent)).map(([percent, dashes]) => ({ words: `${percent} %`, dashes, lines: contours(layer.values, grid, percent) }));
+    made.set(layer, lines);
+    return lines;
 }
 
 /** The lines and their names for a picture of that grid. */
