@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -189,38 +188,6 @@ def test_dragging_zooms_every_chart_and_all_resets(page: Page) -> None:
     page.locator(".reset").click()
     page.mouse.move(box["x"] + box["width"] - 1, middle)
     assert int(page.locator("#epoch").input_value()) > 7000
-
-
-def test_a_report_that_opens_zoomed_says_so_and_shows_all_by_a_key(browser: Browser, tmp_path: Path) -> None:
-    fixture = report_fixture.flight()
-    onset, clear = (int(fixture.epochs["time_ns"][k]) for k in (4000, 4300))
-    events = fixture.events.with_columns(onset_ns=pl.lit(onset), clear_ns=pl.lit(clear))
-    page = _open(browser, render(fixture.summary, fixture.record, fixture.epochs, events, fixture.waypoints, tmp_path / "report.html"))
-    line = page.locator(".charts > .shown-span")
-    # What happened took 300 epochs of a second; a fifth of that is shown on both sides.
-    offset_s = page.evaluate("(p => p.gps_epoch_unix_s - p.utc_offset_s)(JSON.parse(document.getElementById('navbound-data').textContent))")
-    utc = [_utc(fixture, k, offset_s) for k in (3940, 4360, 0, len(fixture.epochs) - 1)]
-    assert line.inner_text().split("\n")[0] == f"The charts show what happened, {utc[0]} to {utc[1]}, of {utc[2]} to {utc[3]} UTC."
-    line.get_by_role("button", name="Show all").focus()
-    page.keyboard.press("Enter")
-    assert line.is_hidden()
-    assert page.locator(".reset", has_text="All").is_disabled()
-    assert page.evaluate("document.activeElement.closest('.charts') !== null")
-    page.keyboard.press("e")
-    assert line.is_visible()
-    page.locator('.cursor-bar [data-choice="along"]').click()
-    along = fixture.epochs["along_m"].to_numpy() / 1852.0
-    text = line.inner_text().replace("\u2212", "-")
-    assert f"what happened, {along[3940]:.2f} to {along[4360]:.2f}, of {along[0]:.2f} to {along[-1]:.2f} NM." in text
-
-
-def test_no_line_stands_over_charts_that_show_all(page: Page) -> None:
-    assert page.locator(".charts > .shown-span").is_hidden()
-    page.evaluate("scrollTo(0, 0)")
-
-
-def _utc(fixture: report_fixture.Fixture, epoch: int, offset_s: float) -> str:
-    return datetime.fromtimestamp(int(fixture.epochs["time_ns"][epoch]) / 1e9 + offset_s, UTC).strftime("%H:%M:%S")
 
 
 def test_a_spike_of_one_epoch_is_drawn_though_six_epochs_share_a_pixel(page: Page, one: report_fixture.Fixture) -> None:

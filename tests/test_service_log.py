@@ -277,6 +277,7 @@ def test_the_map_shows_the_grid_as_it_stood_at_the_cursor(browser: Browser, repo
     )
     page.locator("#grid-map summary").focus()
     page.keyboard.press("Enter")
+    page.locator("#grid-map tbody tr").first.wait_for()
     assert page.locator("#grid-map tbody tr").all_inner_texts() == [
         "50° N, 175° E\tnot to be used",
         "50° N, 180° W\tnot monitored",
