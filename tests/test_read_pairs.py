@@ -64,12 +64,12 @@ def test_a_text_of_that_name_is_no_pair(tmp_path: Path) -> None:
         read(path)
 
 
-def test_beside_a_latitude_and_a_longitude_nothing_is_taken_apart(tmp_path: Path) -> None:
+def test_beside_a_latitude_and_a_longitude_pairs_are_compared_with_them(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     rows = [f'{BEGIN_S + k},48.0,{2.0 + 0.001 * k},"1.0,2.0"' for k in range(N)]
     path.write_text("timestamp,lat,lon,position\n" + "\n".join(rows))
     reading = read(path)
-    assert (reading.columns["est_lat_rad"], reading.unused) == ("lat:deg", ["position"])
+    assert (reading.columns["est_lat_rad"], len(reading.position_doubts)) == ("lat:deg", 2)
 
 
 @pytest.mark.parametrize("separator", [";", "\t"])

@@ -16,13 +16,14 @@ STATED_LINE, ACCURACY, HEALTH = 6, slice(4, 23), slice(23, 42)
 """Of a record in RINEX 3: the line after the first six, its first and second field."""
 
 
-def changed(folder: Path, name: str, which: set[int], *, field: slice = HEALTH, value: float = 63) -> Path:
-    """The example file with one field of some records of a satellite, counted from 0, by default unhealthy."""
+def changed(folder: Path, name: str, which: set[int], *, field: slice = HEALTH, value: float | None = 63) -> Path:
+    """The example file with one field of some records of a satellite, counted from 0, by default unhealthy; None leaves it blank."""
     lines = BROADCAST.read_text(encoding="ascii").splitlines()
     begins = [k for k, line in enumerate(lines) if line.startswith(f"{name} ")]
     for number in which:
         line = lines[begins[number] + STATED_LINE]
-        lines[begins[number] + STATED_LINE] = line[: field.start] + f"{value:19.12e}".replace("e", "D") + line[field.stop :]
+        written = " " * 19 if value is None else f"{value:19.12e}".replace("e", "D")
+        lines[begins[number] + STATED_LINE] = line[: field.start] + written + line[field.stop :]
     path = folder / "b.rnx"
     path.write_text("\n".join(lines) + "\n", encoding="ascii")
     return path
@@ -60,6 +61,11 @@ def test_the_nearest_record_says_whether_a_satellite_is_healthy(tmp_path: Path, 
     ("letter", "field", "value", "promised"),
     [
         ("E", HEALTH, 0b000_010_000, False),
+        ("E", HEALTH, None, False),
+        ("E", ACCURACY, None, False),
+        ("G", HEALTH, None, False),
+        ("G", HEALTH, 0.5, False),
+        ("G", ACCURACY, None, False),
         ("E", HEALTH, 0b010_000_000, False),
         ("E", HEALTH, 0, True),
         ("E", ACCURACY, -1.0, False),
@@ -69,7 +75,7 @@ def test_the_nearest_record_says_whether_a_satellite_is_healthy(tmp_path: Path, 
     ],
 )
 def test_what_any_signal_or_the_accuracy_forbids_is_not_counted_on(
-    tmp_path: Path, letter: str, field: slice, value: float, promised: bool
+    tmp_path: Path, letter: str, field: slice, value: float | None, promised: bool
 ) -> None:
     name = next(s for s in gnss.constellation(BROADCAST).satellite if s.startswith(letter))
     orbits = gnss.constellation(changed(tmp_path, name, {0}, field=field, value=value))

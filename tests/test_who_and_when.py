@@ -278,7 +278,6 @@ def test_a_callsign_is_one_in_any_writing(tmp_path: Path) -> None:
     ("added", "named"),
     [
         ({"last_position": 1_700_000_000, "time_position": 1_699_999_000}, "time_position"),
-        ({"seen_pos": -30.0}, "seen_pos (-30.0)"),
         ({"seen_pos_ms": 30000}, "seen_pos_ms"),
     ],
 )

@@ -42,7 +42,7 @@ pub struct Judged {
 /// an old position from a wrong one.
 /// The time runs from the last *different* position: after 87 s without news an aircraft may
 /// be 20 km further on, and is not jumping. A reported speed above `factor * m + margin`, m being the median of the speeds reported
-/// around it, is not believed, and m counts in its place.
+/// around it, and by 1 m/s2 over the time to the nearest of them, is not believed, and m counts in its place.
 ///
 /// An unchanged position is held, and stale in time, where the aircraft says that it moves. Where it says nothing of its speed, a position
 /// whose bits repeat for longer than the stale time is stale: measurements have noise, and nobody vouches that the aircraft stands. So is one
@@ -160,12 +160,16 @@ pub struct Track {
     repeats: Repeats,
     gone: Gone,
     speed: LastSpeed,
-    /// Speeds of the reports before \[m/s\]; NaN where none was reported.
-    before_mps: [f64; SPEEDS_BESIDE],
+    /// Times and speeds of the reports before; NaN where none was reported.
+    before: [Spoken; SPEEDS_BESIDE],
 }
 
 /// Reports to either side whose speeds a reported speed is compared with. Provenance: ours: four wild ones in a row do not carry their median.
 pub const SPEEDS_BESIDE: usize = 4;
+/// When a report was made, and its speed \[m/s\].
+pub type Spoken = (GpsTime, f64);
+/// What an aircraft changes its speed by on its way from one report to the next, in sparse reports \[m/s2\]. Provenance: ours.
+const CHANGE_MPS2: f64 = 1.0;
 
 impl Track {
     /// Of a track of which every report was seen.
@@ -186,39 +190,41 @@ impl Track {
             repeats: Repeats::default(),
             gone: Gone::default(),
             speed: LastSpeed::default(),
-            before_mps: [f64::NAN; SPEEDS_BESIDE],
+            before: [(GpsTime::default(), f64::NAN); SPEEDS_BESIDE],
         }
     }
 
-    /// Judge the next reports; `after_mps` are the speeds of the [`SPEEDS_BESIDE`] reports after them, as far as there are any.
+    /// Judge the next reports; `after` are those of the [`SPEEDS_BESIDE`] reports after them, as far as there are any.
     ///
     /// # Errors
     /// As [`judge`], with the index among these.
-    pub fn judge(&mut self, reports: &[Report], after_mps: &[f64]) -> Result<Vec<Judged>, (usize, OutOfDomain)> {
+    pub fn judge(&mut self, reports: &[Report], after: &[Spoken]) -> Result<Vec<Judged>, (usize, OutOfDomain)> {
         let mut judged = Vec::with_capacity(reports.len());
         for (index, reported) in reports.iter().enumerate() {
-            let later = reports[index + 1..].iter().map(|r| r.speed_mps).chain(after_mps.iter().copied());
-            let usual_mps = self.usual_speed(reported.speed_mps, later.take(SPEEDS_BESIDE));
-            let doubted = reported.speed_mps > self.limits.speed_factor * usual_mps + self.limits.speed_margin_mps;
+            let later = reports[index + 1..].iter().map(|r| (r.time, r.speed_mps)).chain(after.iter().copied());
+            let (usual_mps, nearest_s) = self.usual_speed(reported, later.take(SPEEDS_BESIDE));
+            let most_mps = self.limits.speed_factor * usual_mps + self.limits.speed_margin_mps + CHANGE_MPS2 * nearest_s;
+            let doubted = reported.speed_mps > most_mps;
             let believed = if doubted { Report { speed_mps: usual_mps, ..*reported } } else { *reported };
             let report = &self.speed.standing_in(&believed, &self.limits);
             judged.push(self.step(report, doubted).map_err(|refusal| (index, refusal))?);
-            self.before_mps.rotate_left(1);
-            self.before_mps[SPEEDS_BESIDE - 1] = reported.speed_mps;
+            self.before.rotate_left(1);
+            self.before[SPEEDS_BESIDE - 1] = (reported.time, reported.speed_mps);
         }
         Ok(judged)
     }
 
-    /// The median of the speeds reported around a report \[m/s\]; NaN where it reports none.
-    fn usual_speed(&self, own_mps: f64, later_mps: impl Iterator<Item = f64>) -> f64 {
-        if own_mps.is_nan() {
-            return f64::NAN;
+    /// The median of the speeds reported around a report \[m/s\], and the time to the nearest of them \[s\]; NaN where it reports none.
+    fn usual_speed(&self, own: &Report, later: impl Iterator<Item = Spoken>) -> (f64, f64) {
+        if own.speed_mps.is_nan() {
+            return (f64::NAN, f64::NAN);
         }
-        let around = self.before_mps.iter().copied().chain([own_mps]).chain(later_mps);
-        let mut speeds: Vec<f64> = around.filter(|speed| !speed.is_nan()).collect();
+        let beside: Vec<Spoken> = self.before.iter().copied().chain(later).filter(|(_, speed_mps)| !speed_mps.is_nan()).collect();
+        let nearest_s = beside.iter().map(|(time, _)| own.time.seconds_since(*time).abs()).fold(f64::INFINITY, f64::min);
+        let mut speeds: Vec<f64> = beside.iter().map(|(_, speed_mps)| *speed_mps).chain([own.speed_mps]).collect();
         speeds.sort_unstable_by(f64::total_cmp);
         // Of an even number the lower: of two that contradict each other the smaller reach.
-        speeds[(speeds.len() - 1) / 2]
+        (speeds[(speeds.len() - 1) / 2], nearest_s)
     }
 
     fn step(&mut self, report: &Report, speed_doubted: bool) -> Result<Judged, OutOfDomain> {

@@ -89,10 +89,9 @@ fn track(observations: &Observations, system: usize, code: usize) -> Option<Trac
     let constellation = Constellation::from_index(system)?;
     let [_, band, _] = *observations.codes[system].get(code)?;
     let own = own_phases(observations, system, code);
-    let other = observations.codes[system].iter().enumerate().filter(|(_, c)| c[0] == b'L' && c[1] != band);
-    let other = other.filter_map(|(k, c)| Some((k, Carrier::from_band(constellation, c[1])?)));
+    let second = other_phases(observations, system, code);
     let carrier = Carrier::from_band(constellation, band)?;
-    (!own.is_empty()).then(|| Track { code, own, carrier, second: other.collect() })
+    (!own.is_empty()).then(|| Track { code, own, carrier, second })
 }
 
 /// Columns of the phases of a code's own carrier: the same signal's first, then any.
@@ -104,6 +103,15 @@ pub(crate) fn own_phases(observations: &Observations, system: usize, code: usize
         codes.iter().enumerate().filter(move |(_, c)| serves(c)).map(|(k, _)| k)
     };
     of(true).chain(of(false)).collect()
+}
+
+/// Columns of the phases of other carriers than a code's, with theirs.
+pub(crate) fn other_phases(observations: &Observations, system: usize, code: usize) -> Vec<(usize, Carrier)> {
+    let codes = &observations.codes[system];
+    let of = Constellation::from_index(system).zip(codes.get(code));
+    let Some((constellation, [_, band, _])) = of else { return Vec::new() };
+    let phases = codes.iter().enumerate().filter(|(_, c)| c[0] == b'L' && c[1] != *band);
+    phases.filter_map(|(k, c)| Some((k, Carrier::from_band(constellation, c[1])?))).collect()
 }
 
 /// Whether the receiver flags a loss of lock at a value, by its place among all values.

@@ -9,7 +9,7 @@ use navbound_core::monitor::ahead::{Ahead, Reached};
 use navbound_core::monitor::motion::{LastSpeed, Motion, Report};
 use navbound_core::monitor::neighbours::{Height, Neighbours, Place};
 use navbound_core::monitor::standing::{Fall, Gone, Owed};
-use navbound_core::monitor::way::{Mark, Way};
+use navbound_core::monitor::way::{Mark, Through, Way};
 use navbound_core::quantity::{GpsTime, Metres};
 
 /// Everything that is kept of a track.
@@ -99,6 +99,10 @@ impl Track {
             report(to, place);
             mark(to, so_far);
         });
+        to.option(self.motion.way.through, |to, through| {
+            report(to, through.place);
+            [through.moved_m, through.longest_s].into_iter().for_each(|number| to.f64(number));
+        });
         for each in self.motion.way.marks {
             to.option(each, mark);
         }
@@ -161,6 +165,7 @@ impl Track {
         };
         let height = from.option(read_height)?;
         let mut way = Way { last: from.option(|from| Ok((read_report(from)?, read_mark(from)?)))?, ..Way::default() };
+        way.through = from.option(|from| Ok(Through { place: read_report(from)?, moved_m: from.f64()?, longest_s: from.f64()? }))?;
         for each in &mut way.marks {
             *each = from.option(read_mark)?;
         }

@@ -199,10 +199,11 @@ impl PlausibleTrack {
     }
 
     /// Finding (0 plausible, 1 held, 2 stale, 3 jump, 4 unsettled, 5 late, 6 ahead), step [m], speed of a step that is too fast [m/s].
-    /// Whether the reported speed was not believed. `after_mps` are speeds of the reports after these, as many as [`SPEEDS_BESIDE`].
-    fn judge<'py>(&mut self, py: Python<'py>, reports: Reports<'py>, after_mps: Vec<f64>) -> PyResult<Bound<'py, PyDict>> {
+    /// Whether the reported speed was not believed. `after` are times \[ns\] and speeds of the reports after these, as many as [`SPEEDS_BESIDE`].
+    fn judge<'py>(&mut self, py: Python<'py>, reports: Reports<'py>, after: Vec<(i64, f64)>) -> PyResult<Bound<'py, PyDict>> {
+        let after: Vec<_> = after.into_iter().map(|(time_ns, speed_mps)| (GpsTime::from_nanoseconds(time_ns), speed_mps)).collect();
         let track = self.track.get_or_insert_with(|| Track::new(std::mem::take(&mut self.survey), &self.limits));
-        let judged = track.judge(&reports_of(&reports)?, &after_mps).map_err(|(index, e)| input_error(e, Some(index)))?;
+        let judged = track.judge(&reports_of(&reports)?, &after).map_err(|(index, e)| input_error(e, Some(index)))?;
         let code = |finding| match finding {
             Finding::Plausible => 0_u8,
             Finding::Repeated => 1,

@@ -264,9 +264,11 @@ def solve(
     return Positions(epochs, unused, codes, models, ranges, used, _heard(heard, ranges, name, observations.time_ns))
 
 
-def compared_words(n_compared: int, n_epochs: int) -> str:
+def compared_words(compared: tuple[int, int], n_epochs: int) -> str:
     """At how many epochs codes were compared with their phases: at the others nothing shows that all of them are led off together."""
-    return f"codes compared with carrier phases at {n_compared} of {n_epochs} epochs; at the others a lead of all codes is not seen"
+    n, n_dropped = compared
+    dropped = f"; a lead was dropped {n_dropped} times, as hardly any phase went on: whether it went on is not known" if n_dropped else ""
+    return f"codes compared with carrier phases at {n} of {n_epochs} epochs; at the others a lead of all codes is not seen{dropped}"
 
 
 def _ionosphere_words(name: str, activity_sfu: float) -> str:

@@ -2,16 +2,18 @@
 
 use super::ranges::{Source, combination};
 use super::signals::{Measured, Plan};
-use crate::smoothing::{lost, own_phases};
+use crate::smoothing::{lost, other_phases, own_phases};
 use nalgebra::Vector3;
+use navbound_core::quantity::Metres;
+use navbound_core::signal::smoothing::divergence_free;
 use navbound_core::signal::{Carrier, Constellation};
-use navbound_core::solution::led_off::{CodesAgainstPhases, Compared};
+use navbound_core::solution::led_off::{CodesAgainstPhases, Compared, Heard};
 use navbound_formats::rinex::Observations;
 
 const SYSTEMS: usize = Constellation::ALL.len();
 
-/// Columns of the phases of each code's own carrier, by preference.
-type Phases = Vec<Vec<usize>>;
+/// Columns of the phases of each code's own carrier, by preference, and those of other carriers.
+type Phases = Vec<(Vec<usize>, Vec<(usize, Carrier)>)>;
 
 /// The codes of a recording against their phases, epoch after epoch.
 pub(crate) struct Compare<'a> {
@@ -26,7 +28,7 @@ impl<'a> Compare<'a> {
         let (observations, plans) = (source.observations, source.plans);
         let phases = std::array::from_fn(|system| {
             let codes = 0..if plans[system].is_some() { observations.codes[system].len() } else { 0 };
-            codes.map(|code| own_phases(observations, system, code)).collect()
+            codes.map(|code| (own_phases(observations, system, code), other_phases(observations, system, code))).collect()
         });
         Self { observations, plans, phases, codes: CodesAgainstPhases::new(interval_s(observations)) }
     }
@@ -43,6 +45,11 @@ impl<'a> Compare<'a> {
         self.codes.n_compared()
     }
 
+    /// How often a lead that stood was dropped.
+    pub(crate) const fn n_dropped(&self) -> usize {
+        self.codes.n_dropped()
+    }
+
     fn hear(&mut self, epoch: usize) {
         let (o, time) = (self.observations, self.observations.time[epoch]);
         for k in o.satellites(epoch) {
@@ -57,12 +64,25 @@ impl<'a> Compare<'a> {
             let (factors, _) = combination(&pair[..bands]);
             let code: f64 = factors.iter().zip(&pair[..bands]).map(|(f, m)| f * m.pseudorange).sum();
             let [first, second] = pair;
-            let phase = self.phases[system].get(first.column).and_then(|p| p.iter().copied().find(|c| values[*c].is_finite()));
-            let metres = phase.map_or(f64::NAN, |column| values[column] * first.carrier.wavelength_m());
-            let slip = o.interrupted[epoch] || phase.is_some_and(|column| lost(o, o.value_range(k).start + column));
+            let there = |column: usize| values[column].is_finite();
+            let metres = |column: usize, carrier: Carrier| Metres::new(values[column] * carrier.wavelength_m());
+            let of_code = self.phases[system].get(first.column);
+            let one = of_code.and_then(|(own, _)| own.iter().copied().find(|c| there(*c)));
+            let other = of_code.and_then(|(_, others)| others.iter().copied().find(|(c, _)| there(*c)));
+            let phase_m = one.map_or(f64::NAN, |column| {
+                let own = (first.carrier, metres(column, first.carrier));
+                let Some((second, carrier)) = other else { return own.1.m() };
+                let as_code_m = divergence_free(own, (carrier, metres(second, carrier))).m();
+                // The ionosphere is not in the codes of a pair: half way between the phase and one that runs as its code.
+                if bands > 1 { 0.5 * (own.1.m() + as_code_m) } else { as_code_m }
+            });
+            let phases = one.into_iter().chain(other.map(|(column, _)| column));
+            let slip = o.interrupted[epoch] || phases.clone().any(|column| lost(o, o.value_range(k).start + column));
             // Other measurements are another arc.
-            let track = [first.column, second.column, phase.unwrap_or(0)].iter().fold(0, |track, c| track << 10 | (*c as u32 & 0x3ff));
-            self.codes.hear(time, satellite, code - metres, track, slip);
+            let track =
+                [first.column, second.column].into_iter().chain(phases).fold(0_u32, |track, c| track.rotate_left(8) ^ (c as u32 + 1));
+            let heard = Heard { satellite, less_phase_m: code - phase_m, diverges: other.is_none(), track, lost: slip };
+            self.codes.hear(time, &heard);
         }
     }
 }

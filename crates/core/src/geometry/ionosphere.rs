@@ -130,6 +130,21 @@ impl Overhead {
     }
 }
 
+/// Radius of the Earth and height of the ionosphere's shell in the grid of SBAS \[m\]. Provenance: standard (DO-229 appendix A.4.4.10).
+pub const EARTH_M: f64 = 6_378_136.3;
+/// See [`EARTH_M`].
+pub const SHELL_M: f64 = 350_000.0;
+
+/// Square of the obliquity factor of the ionospheric shell, from the square of the elevation's cosine.
+///
+/// ```text
+/// F_pp = (1 - (Re cos E / (Re + h_I))^2)^-1/2
+/// ```
+pub fn obliquity_squared(cos_el_squared: f64) -> f64 {
+    let ratio = EARTH_M / (EARTH_M + SHELL_M);
+    1.0 / (1.0 - ratio * ratio * cos_el_squared)
+}
+
 #[cfg(test)]
 #[path = "ionosphere_tests.rs"]
 mod tests;

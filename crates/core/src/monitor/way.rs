@@ -48,11 +48,24 @@ pub struct Mark {
     pub reported_m: f64,
 }
 
+/// The places of reports without a speed, since the last with one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Through {
+    /// The last of them.
+    pub place: Report,
+    /// Sum of the distances up to it \[m\].
+    pub moved_m: f64,
+    /// The longest time between two of them \[s\].
+    pub longest_s: f64,
+}
+
 /// The way since the aircraft says that it moves. Lengths, not displacements: a turn goes as far as a straight flight. No heap.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Way {
     /// The last place.
     pub last: Option<(Report, Mark)>,
+    /// The places since it that state no speed.
+    pub through: Option<Through>,
     /// The places before it, the earliest first.
     pub marks: [Option<Mark>; MARKS],
     /// Since when the last position that was judged is behind.
@@ -60,20 +73,31 @@ pub struct Way {
 }
 
 impl Way {
-    /// For how long the positions up to this one have fallen behind the reported speed \[s\]. A report without a speed is as the one before it,
-    /// and nothing is forgotten by it.
+    /// For how long the positions up to this one have fallen behind the reported speed \[s\]. A report without a speed is as the one before it;
+    /// its place is one of the way all the same.
     ///
     /// # Errors
     /// [`OutOfDomain`] for a position that is no place on the Earth.
     pub fn is_behind(&mut self, report: &Report, limits: &Limits) -> Result<Option<f64>, OutOfDomain> {
         let here = sea_level(report)?;
         let spoken = self.last.filter(|(last, _)| (0.0..=SILENCE_S).contains(&report.time.seconds_since(last.time)));
-        if spoken.is_some() && report.speed_mps.is_nan() {
+        if let Some((last, _)) = spoken.filter(|_| report.speed_mps.is_nan()) {
+            self.pass(&last, report, &here)?;
             return Ok(self.behind.map(|since| report.time.seconds_since(since)));
         }
         let behind_s = self.with_speed(report, &here, limits)?;
         self.behind = behind_s.map(|behind_s| report.time.plus_seconds(-behind_s));
         Ok(behind_s)
+    }
+
+    fn pass(&mut self, last: &Report, report: &Report, here: &EcefPosition) -> Result<(), OutOfDomain> {
+        let before = self.through.unwrap_or(Through { place: *last, moved_m: 0.0, longest_s: 0.0 });
+        let step_s = report.time.seconds_since(before.place.time);
+        if step_s >= PLACE_S {
+            let moved_m = before.moved_m + here.minus(&sea_level(&before.place)?).vector().norm();
+            self.through = Some(Through { place: *report, moved_m, longest_s: before.longest_s.max(step_s) });
+        }
+        Ok(())
     }
 
     fn with_speed(&mut self, report: &Report, here: &EcefPosition, limits: &Limits) -> Result<Option<f64>, OutOfDomain> {
@@ -91,12 +115,17 @@ impl Way {
             self.begin(report);
             return Ok(None);
         }
+        let through = self.through.unwrap_or(Through { place: last, moved_m: 0.0, longest_s: 0.0 });
+        let longest_s = through.longest_s.max(report.time.seconds_since(through.place.time));
+        // Steps of one length, the longest: what a turn may take of them is then the most.
+        let steps = if longest_s > 0.0 { elapsed_s / longest_s } else { 0.0 };
         let now = Mark {
             time: report.time,
-            moved_m: so_far.moved_m + here.minus(&sea_level(&last)?).vector().norm(),
-            reported_m: so_far.reported_m + least_chord_m(last.speed_mps.min(report.speed_mps), elapsed_s),
+            moved_m: so_far.moved_m + through.moved_m + here.minus(&sea_level(&through.place)?).vector().norm(),
+            reported_m: so_far.reported_m + steps * least_chord_m(last.speed_mps.min(report.speed_mps), longest_s),
         };
         if elapsed_s >= PLACE_S {
+            self.through = None;
             self.last = Some((*report, now));
             self.mark(now);
         }
@@ -165,7 +194,7 @@ mod tests {
     /// A stand at 64 m/s that states its speed in one of so many seconds: what was found stands until the next speed.
     #[test]
     fn a_stand_is_seen_where_speeds_are_rarely_stated() {
-        for each in [1, 2, 5, 10, 12] {
+        for each in [1, 2, 5, 10, 12, 20, 40, 60] {
             let mut way = Way::default();
             let behind: Vec<bool> = (0..120)
                 .map(|k| {
@@ -177,7 +206,8 @@ mod tests {
                 })
                 .collect();
             let first = behind.iter().position(|b| *b).unwrap();
-            assert!(first <= 40 && behind[first..].iter().all(|b| *b), "{each} {first}");
+            // Judged from 20 s on, by the first speed after them.
+            assert!(first <= 20 + each as usize && behind[first..].iter().all(|b| *b), "{each} {first}");
         }
     }
 

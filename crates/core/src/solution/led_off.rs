@@ -13,6 +13,7 @@
 
 use super::point::MOST_RANGES;
 use super::wls::{Normal, Row};
+use crate::geometry::ionosphere::obliquity_squared;
 use crate::quantity::GpsTime;
 use crate::signal::{Constellation, SatelliteId};
 use crate::special::gamma::chi_square_tail;
@@ -32,7 +33,8 @@ pub const LEAST_M: f64 = 15.0;
 const RISK: f64 = 1e-9;
 /// Risk of residuals that are not noise.
 const MISFIT: f64 = 1e-3;
-/// What the ionosphere moves code and phase of one satellite apart by, one deviation \[m/s\]: twice 0.6 TECU a minute on L1. Provenance: ours.
+/// What the ionosphere moves code and phase of one satellite overhead apart by, one deviation \[m/s\]: twice 0.6 TECU a minute on L1; lower down
+/// by the square of the obliquity, for the path is longer and its pierce point farther and faster. Provenance: ours.
 const DIVERGENCE_MPS: f64 = 0.003;
 /// Satellites with an unbroken phase below which nothing stands any longer: as many as unknowns, and one.
 const COMMON: usize = 5;
@@ -55,18 +57,34 @@ pub struct Compared {
     pub weight: f64,
 }
 
+/// Code and phase of a satellite at an epoch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Heard {
+    /// Which.
+    pub satellite: SatelliteId,
+    /// Code less phase \[m\].
+    pub less_phase_m: f64,
+    /// Whether the ionosphere moves the two apart: where a second phase is there it need not.
+    pub diverges: bool,
+    /// Of which measurements.
+    pub track: u32,
+    /// Whether the receiver flags a loss of lock.
+    pub lost: bool,
+}
+
 /// Code less phase of one satellite, as long as its phase is unbroken.
 #[derive(Debug, Clone, Copy)]
 struct Arc {
     seen: Option<GpsTime>,
     /// Of which measurements.
     track: u32,
+    diverges: bool,
     less_phase_m: f64,
     /// The same at the time of the references, where codes that nothing leads off had put it; NaN without one.
     reference_m: f64,
 }
 
-const NOTHING: Arc = Arc { seen: None, track: 0, less_phase_m: f64::NAN, reference_m: f64::NAN };
+const NOTHING: Arc = Arc { seen: None, track: 0, diverges: true, less_phase_m: f64::NAN, reference_m: f64::NAN };
 
 /// The codes of one receiver against their phases, epoch after epoch in time. No heap.
 #[derive(Debug, Clone)]
@@ -80,6 +98,7 @@ pub struct CodesAgainstPhases {
     inherited: Matrix3<f64>,
     longest_gap_s: f64,
     n_compared: usize,
+    n_dropped: usize,
 }
 
 impl CodesAgainstPhases {
@@ -87,7 +106,15 @@ impl CodesAgainstPhases {
     #[must_use]
     pub fn new(interval_s: f64) -> Self {
         let longest_gap_s = LONGEST_GAP_S.max(GAP_INTERVALS * interval_s.min(LONGEST_INTERVAL_S));
-        Self { arcs: [NOTHING; SLOTS], since: None, standing: None, inherited: Matrix3::zeros(), longest_gap_s, n_compared: 0 }
+        Self {
+            arcs: [NOTHING; SLOTS],
+            since: None,
+            standing: None,
+            inherited: Matrix3::zeros(),
+            longest_gap_s,
+            n_compared: 0,
+            n_dropped: 0,
+        }
     }
 
     /// How many epochs were compared: enough satellites with an unbroken phase, and residuals that fit.
@@ -96,13 +123,21 @@ impl CodesAgainstPhases {
         self.n_compared
     }
 
-    /// A satellite that has code and phase at an epoch: code less phase \[m\], of which measurements, and whether the receiver flags a loss of
-    /// lock. All of an epoch before it is judged.
-    pub fn hear(&mut self, time: GpsTime, satellite: SatelliteId, less_phase_m: f64, track: u32, lost: bool) {
-        let Some(arc) = self.arcs.get(slot(satellite)).copied() else { return };
-        let unbroken = !lost && track == arc.track && arc.seen.is_some_and(|seen| self.unbroken(time, seen));
+    /// How often a shift that stood was dropped, since hardly any phase went on: whether it went on nothing shows.
+    #[must_use]
+    pub const fn n_dropped(&self) -> usize {
+        self.n_dropped
+    }
+
+    /// A satellite that has code and phase at an epoch. All of an epoch before it is judged.
+    pub fn hear(&mut self, time: GpsTime, heard: &Heard) {
+        let Some(arc) = self.arcs.get(slot(heard.satellite)).copied() else { return };
+        let same = heard.track == arc.track && heard.diverges == arc.diverges;
+        let unbroken = !heard.lost && same && arc.seen.is_some_and(|seen| self.unbroken(time, seen));
         let reference_m = if unbroken { arc.reference_m } else { f64::NAN };
-        self.arcs[slot(satellite)] = Arc { seen: less_phase_m.is_finite().then_some(time), track, less_phase_m, reference_m };
+        let Heard { less_phase_m, track, diverges, .. } = *heard;
+        let seen = less_phase_m.is_finite().then_some(time);
+        self.arcs[slot(heard.satellite)] = Arc { seen, track, diverges, less_phase_m, reference_m };
     }
 
     /// Judge an epoch by the satellites of its solution: where the codes lead the position \[m, east, north, up\], `None` where nothing says
@@ -111,17 +146,17 @@ impl CodesAgainstPhases {
         let age_s = self.since.map_or(f64::INFINITY, |since| time.seconds_since(since));
         let kept = self.arcs.iter().filter(|a| a.reference_m.is_finite() && a.seen.is_some_and(|seen| self.unbroken(time, seen)));
         if kept.count() < COMMON || !(age_s >= 0.0) {
-            self.standing = None;
+            self.n_dropped += usize::from(self.standing.take().is_some());
             self.renew(time);
             return None;
         }
         let mut rows = [Row::default(); MOST_RANGES];
         let mut seen = [None; MOST_RANGES];
         let mut n = 0;
-        let wander = DIVERGENCE_MPS * age_s;
         for (c, (row, place)) in used.zip(rows.iter_mut().zip(&mut seen)) {
             let arc = self.arcs.get(slot(c.satellite)).filter(|a| a.seen == Some(time)).copied().unwrap_or(NOTHING);
             // Two codes have the noise of one twice.
+            let wander = if arc.diverges { age_s * divergence_mps(c.unit.z) } else { 0.0 };
             let weight = if arc.reference_m.is_finite() { 1.0 / (2.0 / c.weight + wander * wander) } else { 0.0 };
             *row = Row { unit: c.unit, weight, clock: ONE, residual: if weight > 0.0 { arc.less_phase_m - arc.reference_m } else { 0.0 } };
             *place = Some(c);
@@ -190,6 +225,11 @@ impl CodesAgainstPhases {
 
 fn slot(satellite: SatelliteId) -> usize {
     satellite.constellation.index() * 100 + usize::from(satellite.number)
+}
+
+/// What the ionosphere moves code and phase apart by, one deviation \[m/s\].
+fn divergence_mps(sin_elevation: f64) -> f64 {
+    DIVERGENCE_MPS * obliquity_squared((1.0 - sin_elevation * sin_elevation).max(0.0))
 }
 
 fn beyond(shift: &Vector3<f64>, covariance: &Matrix3<f64>) -> bool {

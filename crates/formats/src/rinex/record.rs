@@ -52,6 +52,12 @@ impl<'a> Block<'a> {
         Ok(values)
     }
 
+    /// Whether nothing stands in one of the fields from the second line on.
+    fn is_blank(&self, k: usize) -> bool {
+        let (row, from) = ((k - 3) / 4 + 1, self.indent + at::WIDTH * ((k - 3) % 4));
+        self.lines.get(row).is_none_or(|line| matches!(fixed(line, from, from + at::WIDTH), Field::Blank))
+    }
+
     fn not_a_number(&self, row: usize, k: usize, field: &[u8]) -> Refusal {
         Refusal {
             line: self.number + row,
@@ -145,8 +151,11 @@ impl<'a> Block<'a> {
             latitude_harmonics: [v[at::CUC], v[at::CUS]],
             radius_harmonics: [v[at::CRC], v[at::CRS]],
             inclination_harmonics: [v[at::CIC], v[at::CIS]],
-            accuracy_m: v[at::ACCURACY],
-            health: Health { word: small(v[at::HEALTH]) },
+            // What is not stated is no promise.
+            accuracy_m: if self.is_blank(at::ACCURACY) { f64::NAN } else { v[at::ACCURACY] },
+            health: Health {
+                word: if self.is_blank(at::HEALTH) || v[at::HEALTH].fract() != 0.0 { u16::MAX } else { small(v[at::HEALTH]) },
+            },
             group_delay_s: [v[at::DELAY], if message == Message::Lnav { 0.0 } else { v[at::DELAY_OR_ISSUE] }],
             fit_interval_s: fit_interval(message, last.unwrap_or(0.0)),
         })

@@ -253,12 +253,12 @@ def _columns(epochs: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def _speeds_after(track: str, after: pl.DataFrame | None) -> list[float]:
-    """Speeds of the first rows after a piece, of the track that goes on."""
+def _speeds_after(track: str, after: pl.DataFrame | None) -> list[tuple[int, float]]:
+    """Times [ns] and speeds [m/s] of the first rows after a piece, of the track that goes on."""
     if after is None or after.is_empty():
         return []
     rows = _columns(after.head(_core.SPEEDS_BESIDE))
-    return rows.filter(pl.col("track") == track)["speed"].to_list()
+    return rows.filter(pl.col("track") == track).select("time_ns", "speed").rows()
 
 
 def _reports(group: pl.DataFrame) -> _Reports:

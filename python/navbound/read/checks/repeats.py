@@ -75,7 +75,7 @@ def separate(epochs: pl.DataFrame) -> Repeats:
     place, bound = _other_place(epochs, key), _other_bound(epochs, key)
     status_differs = _differs("status", key) if "status" in epochs.columns else pl.lit(value=False)
     marked = epochs.with_columns(again.alias("__again"), place.alias("__place"), bound.alias("__bound"), status_differs.alias("__status"))
-    doubted = marked.with_columns(pl.col("__place", "__bound").any().over(key)).filter(~pl.col("__again"))
+    doubted = _completed(marked, key).with_columns(pl.col("__place", "__bound").any().over(key)).filter(~pl.col("__again"))
     kept = _refused(doubted.drop(_MARKS), doubted.select(_REASON).unnest("reason"))
     repeated = marked.filter("__again")
     # A time that repeats so often is no second copy of a row: the clock stands, and its rows are epochs of unknown times.
@@ -83,6 +83,14 @@ def separate(epochs: pl.DataFrame) -> Repeats:
     contradicts = repeated.select(pl.any_horizontal("__place", "__bound", "__status", stands)).to_series()
     plain = repeated.drop(_MARKS)
     return Repeats(kept, plain.filter(~contradicts), plain.filter(contradicts))
+
+
+def _completed(epochs: pl.DataFrame, key: list[str]) -> pl.DataFrame:
+    """What one row of a time leaves empty is what another of it states, and of two speeds the larger: no row speaks for nothing."""
+    numbers = [name for name, kind in epochs.schema.items() if kind.is_numeric() and name not in key]
+    speed = [pl.col(name).max().over(key) for name in numbers if name == "ground_speed_mps"]
+    others = [pl.col(name).fill_null(pl.col(name).drop_nulls().first().over(key)) for name in numbers if name != "ground_speed_mps"]
+    return epochs.with_columns(*others, *speed)
 
 
 _MARKS = ("__again", "__place", "__bound", "__status", "__hazard")

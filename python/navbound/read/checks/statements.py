@@ -41,8 +41,8 @@ class Kind:
         Any word that is neither is against it. Numbers are, too, unless `numbers_unknown`.
     numbers_unknown : bool
         A number may mean either, and is not understood.
-    above : float
-        A number above it is against the position, any other says nothing.
+    above, below : float
+        A number above the one or below the other is against the position, any other says nothing.
     fine_begins : str
         Words that begin so are fine, unless they are against the position.
     empty_against : bool
@@ -56,6 +56,7 @@ class Kind:
     other_against: bool = False
     numbers_unknown: bool = False
     above: float = math.inf
+    below: float = -math.inf
     fine_begins: str = ""
     empty_against: bool = False
 
@@ -108,8 +109,9 @@ AGE = Kind(
     frozenset(),
     frozenset(),
     above=STALE_AFTER_S,
+    below=-STALE_AFTER_S,
 )
-"""The age of a position, in seconds; it dates the position, too."""
+"""The age of a position, in seconds; it dates the position, too. One that is of the future is of another clock."""
 
 BY_OTHERS = Kind("invalid", own_positions.LISTS, _YES, _words("0 false f no n none off []"), other_against=True)
 """Whether others computed the position."""
@@ -436,7 +438,8 @@ def stated(kind: Kind, raw: pl.Series) -> Stated:
         against, unknown = against | others, unknown & ~others
     if kind.above < math.inf:
         # A negative one is none.
-        against, unknown, empty = (value > kind.above).fill_null(value=False), unknown & (value.is_null() | (value < 0.0)), False
+        against = ((value > kind.above) | (value < kind.below)).fill_null(value=False)
+        unknown, empty = unknown & ~against & (value.is_null() | (value < 0.0)), False
     # A word of an alarm is one in a column of states too.
     alarm = (unknown & ~number & _alarm(text, _STATE_ALARM)).fill_null(value=False)
     against, unknown = against | alarm, unknown & ~alarm

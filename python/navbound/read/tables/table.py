@@ -174,7 +174,7 @@ def layout_of(path: Path, lines: pl.DataFrame) -> Layout:
         raise FormatError(path, what + _lacking(header), int(lines[LINE][0]), "header")
     layout = Layout(header, separator, _names(path, header, separator))
     pairs = [name for name in layout.names if name.strip().lower() in _PAIRS]
-    if len(pairs) != 1 or any(word in name.lower() for name in layout.names if name not in pairs for word in ("lat", "lon", "lng")):
+    if len(pairs) != 1:
         return layout
     fields = rows_of(path, layout, lines[1 : 1 + _SAMPLE]).frame[pairs[0]].str.strip_chars()
     return replace(layout, pair=pairs[0]) if (fields.is_null() | (fields == "") | fields.str.contains(_PAIR)).all() else layout

@@ -1,5 +1,6 @@
 //! How wrong one corrected range may be: the terms of the error model, each as the standard has it.
 
+pub(super) use crate::geometry::ionosphere::{EARTH_M, SHELL_M, obliquity_squared};
 use crate::quantity::OutOfDomain;
 use crate::signal::sbas::Degradation;
 use crate::special::abreast::exp_of_negative;
@@ -14,9 +15,6 @@ const GIVE_M2: [f64; 15] =
     [0.0084, 0.0333, 0.0749, 0.1331, 0.2079, 0.2994, 0.4075, 0.5322, 0.6735, 0.8315, 1.1974, 1.8709, 3.3260, 20.787, 187.0826];
 /// Added to the UDRE en route when the degradation is unknown \[m\] (standard).
 const UNKNOWN_DEGRADATION_M: f64 = 8.0;
-/// Earth's radius and height of the ionospheric shell \[m\] (standard).
-pub(super) const EARTH_M: f64 = 6_378_136.3;
-pub(super) const SHELL_M: f64 = 350_000.0;
 /// Vertical error of the tropospheric model \[m\] (standard).
 const TROPOSPHERE_M: f64 = 0.12;
 
@@ -101,16 +99,6 @@ pub fn grid_variance_m2(give_m2: f64, degradation_m: f64, rss: bool) -> f64 {
 pub(super) fn aged_grid_m2(give_m2: f64, age_s: f64, degradation: Option<&Degradation>) -> f64 {
     degradation
         .map_or(give_m2, |d| grid_variance_m2(give_m2, grid_degradation_m(d.iono_step_m, d.iono_s, d.iono_ramp_mps, age_s), d.rss_iono))
-}
-
-/// Square of the obliquity factor of the ionospheric shell, from the square of the elevation's cosine.
-///
-/// ```text
-/// F_pp = (1 - (Re cos E / (Re + h_I))^2)^-1/2
-/// ```
-pub fn obliquity_squared(cos_el_squared: f64) -> f64 {
-    let ratio = EARTH_M / (EARTH_M + SHELL_M);
-    1.0 / (1.0 - ratio * ratio * cos_el_squared)
 }
 
 /// Variance of the slant delay by the broadcast model, for en route users whom the grid does not serve \[m²\].

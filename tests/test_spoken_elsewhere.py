@@ -1,0 +1,86 @@
+"""What another row says of a position counts for it: a second row of its time, a row of a speed alone, one velocity a row."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import navbound
+from navbound.run.directory import Run
+
+DEG_PER_M = 1.0 / 111_195.0
+SPEED_MPS = 120.0
+N = 400
+
+
+def stand(k: int) -> dict[str, Any]:
+    """A position that stands, with a metre of noise."""
+    return {"time_s": 1_700_000_000 + k, "lat_deg": 48.0 + (1.3 * (k % 5) - 2.0) * DEG_PER_M, "lon_deg": 2.0, "nac_p": 10}
+
+
+def judged(path: Path, rows: list[dict[str, Any]], piece_rows: int | None = None) -> Run:
+    path.write_text(json.dumps([{"ground_speed_mps": None} | row for row in rows]), encoding="utf-8")
+    return navbound.analyze(path, piece_rows=piece_rows)
+
+
+def n_stale(run: Run) -> int:
+    return int((run.epochs["reason_id"] == "position_stale").fill_null(value=False).sum())
+
+
+def test_the_second_row_of_a_time_states_what_the_first_leaves_empty(tmp_path: Path) -> None:
+    spoken = [each for k in range(N) for each in (stand(k), stand(k) | {"ground_speed_mps": SPEED_MPS})]
+    assert n_stale(judged(tmp_path / "a.json", spoken)) > 0.9 * N
+    against = [each for k in range(N) for each in (stand(k) | {"hpe": None}, stand(k) | {"hpe": 5000.0})]
+    assert judged(tmp_path / "b.json", against).summary.verdict.id == "not_shown"
+    # Without either nothing speaks against it.
+    assert judged(tmp_path / "c.json", [stand(k) for k in range(N)]).summary.verdict.id == "inside"
+
+
+def test_of_two_speeds_of_one_time_the_larger_counts(tmp_path: Path) -> None:
+    both = [stand(k) | {"ground_speed_mps": speed} for k in range(N) for speed in (0.0, SPEED_MPS)]
+    assert n_stale(judged(tmp_path / "a.json", both)) > 0.9 * N
+
+
+def csv(path: Path, every: int) -> Path:
+    """Positions each second, and at every so many a row that states the speed alone."""
+    lines = ["time_s,lat_deg,lon_deg,nac_p,ground_speed_mps"]
+    for k in range(N):
+        each = stand(k)
+        lines.append(f"{each['time_s']},{each['lat_deg']:.9f},2.0,10,")
+        lines += [f"{each['time_s'] + 0.5},,,,{SPEED_MPS}"] * (k % every == 0)
+    path.write_text("\n".join(lines) + "\n", encoding="ascii")
+    return path
+
+
+@pytest.mark.parametrize("every", [1, 7, 30])
+def test_a_row_of_a_speed_alone_is_heard(tmp_path: Path, every: int) -> None:
+    path = csv(tmp_path / "a.csv", every)
+    whole = navbound.analyze(path)
+    assert n_stale(whole) > 0.85 * N
+    pieces = navbound.analyze(path, piece_rows=29)
+    assert whole.epochs["status"].to_list() == pieces.epochs["status"].to_list()
+
+
+def test_one_velocity_a_row_is_a_speed(tmp_path: Path) -> None:
+    rows = [stand(k) | {"vel_n_mps": None, "vel_e_mps": None} | {"vel_e_mps" if k % 2 else "vel_n_mps": 85.0} for k in range(N)]
+    assert n_stale(judged(tmp_path / "a.json", rows)) > 0.9 * N
+
+
+@pytest.mark.parametrize(("age_s", "reported"), [(-1.0, 0), (-2.5, N), (-3600.0, N)])
+@pytest.mark.parametrize("name", ["seen_pos", "fix_age", "position_age"])
+def test_an_age_of_the_future_is_of_another_clock(tmp_path: Path, name: str, age_s: float, reported: int) -> None:
+    moving = [stand(0) | {"time_s": 1_700_000_000 + k, "lat_deg": 48.0 + k * SPEED_MPS * DEG_PER_M, name: age_s} for k in range(N)]
+    assert (judged(tmp_path / "a.json", moving).epochs["reason_id"] == "reported").sum() == reported
+
+
+def test_a_column_of_pairs_beside_latitude_and_longitude_is_compared(tmp_path: Path) -> None:
+    for off, doubted in ((0.0, False), (1.0, True)):
+        lines = ["time_s,lat,lon,Position"]
+        lines += [f'{1_700_000_000 + k},{48 + k * 1e-3:.6f},2.0,"{48 + off + k * 1e-3:.6f},2.0"' for k in range(60)]
+        path = tmp_path / "a.csv"
+        path.write_text("\n".join(lines) + "\n", encoding="ascii")
+        doubts = navbound.analyze(path, sigma_m=5.0).summary.verdict.position_doubts
+        assert any("two columns of one quantity" in each for each in doubts) == doubted
