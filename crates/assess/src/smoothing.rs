@@ -91,7 +91,7 @@ fn track(observations: &Observations, system: usize, code: usize) -> Option<Trac
     let own = own_phases(observations, system, code);
     let second = other_phases(observations, system, code);
     let carrier = Carrier::from_band(constellation, band)?;
-    (!own.is_empty()).then(|| Track { code, own, carrier, second })
+    (!own.is_empty()).then_some(Track { code, own, carrier, second })
 }
 
 /// Columns of the phases of a code's own carrier: the same signal's first, then any.
