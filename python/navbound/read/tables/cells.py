@@ -10,6 +10,21 @@ from navbound.read.tables.columns import Column
 MISSING = r"(?i)^([+-]?nan(\(\w*\))?)?$"
 """Texts of a number that is missing."""
 
+_GROUND, _HEIGHTS = "ground", ("altitude_m", "est_h_m")
+"""What decoders of ADS-B write in place of an altitude of an aircraft on the ground, and the quantities in whose columns they do."""
+
+
+def on_ground(column: pl.Series, what: Column) -> pl.Series:
+    """Where a column of an altitude says that the aircraft is on the ground: a statement, and no number."""
+    if what.quantity not in _HEIGHTS or column.dtype != pl.String:
+        return pl.repeat(value=False, n=len(column), eager=True)
+    return (column.str.strip_chars().str.to_lowercase() == _GROUND).fill_null(value=False)
+
+
+def words_of_ground(name: str, n_rows: int) -> str:
+    """How many rows say so."""
+    return f"{n_rows} rows say “{_GROUND}” in place of an altitude in “{name}”: they have a position and no altitude"
+
 
 def no_field(dtype: pl.DataType) -> bool:
     """Whether a column of this kind holds neither numbers nor text."""
@@ -23,7 +38,7 @@ def numbers(column: pl.Series, what: Column) -> tuple[pl.Series, pl.Series]:
     if column.dtype == pl.String:
         text = column.str.strip_chars()
         # Programs write a missing number as an empty field or as nan: an outage is no damage.
-        text = text.set(text.str.contains(MISSING), None)
+        text = text.set(text.str.contains(MISSING) | on_ground(column, what), None)
         raw = text.cast(pl.Float64, strict=False)
         empty = text.is_null()
     elif column.dtype.is_numeric() or column.dtype == pl.Null:

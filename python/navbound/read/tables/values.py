@@ -16,7 +16,7 @@ from navbound.read.checks.plausible import Limits
 from navbound.read.checks.rejections import Kind, Tally
 from navbound.read.checks.repeats import Repeats, left_out, separate
 from navbound.read.quantities import POSITION_TIME, QUANTITY, UNITS
-from navbound.read.tables.cells import MISSING, largest, no_field, numbers
+from navbound.read.tables.cells import MISSING, largest, no_field, numbers, on_ground, words_of_ground
 from navbound.read.tables.columns import POSITION, Assignment, Column, declare, is_header, position_time
 from navbound.read.tables.further import Further
 from navbound.read.tables.names import Callsigns, one_writing
@@ -120,6 +120,7 @@ class Values:
         self._unknown: dict[str, dict[str, None]] = {}
         self._largest = dict.fromkeys(POSITION, 0.0)
         self._unit = self._unit_dated = ""
+        self._n_ground: dict[str, int] = {}
         self._n_heights = self._n_feet = self._n_metres = 0
 
     def take(self, frame: pl.DataFrame) -> pl.DataFrame:
@@ -141,6 +142,7 @@ class Values:
                 out[name] = one_writing(name, raw.cast(pl.String).str.replace_all(UNSEEN, "").str.strip_chars())
                 continue
             out[name], reason = numbers(raw, column)
+            self._n_ground[column.name] = self._n_ground.get(column.name, 0) + int(on_ground(raw, column).sum())
             reasons[name] = reason
             if name in self._required:
                 against.append((column.name, reason))
@@ -316,6 +318,7 @@ class Values:
         if tuple(self._required) == POSITION and self._mapping.unused:
             self.notes.append(f"{name}: columns not used: {_few(self._mapping.unused)}")
         self.notes += self._callsigns.words(name)
+        self.notes += [f"{name}: {words_of_ground(column, n)}" for column, n in self._n_ground.items() if n]
         self._look_like_radians()
         self._look_like_feet()
         self.position_doubts += self._further.doubts()
