@@ -9,6 +9,8 @@ from typing import Any
 import polars as pl
 import pytest
 
+import navbound
+from navbound.errors import FormatError
 from navbound.read import pieces
 from navbound.read.tables.epochs import Reading, read
 from test_who_and_when import DEG_PER_M, SPEED_MPS
@@ -81,3 +83,79 @@ def test_a_text_table_may_say_ground_too(tmp_path: Path, piece_rows: int | None)
 def test_no_other_word_and_no_other_column_may_say_so(tmp_path: Path, name: str, word: str) -> None:
     reading = read(lines(tmp_path, [state(k, **({name: word} if k == 3 else {})) for k in range(20)]))
     assert [(each.reason, each.count) for each in reading.rejected] == [(f"{name}: not a number; row used without it", 1)]
+
+
+def snapshot(k: int, aircraft: list[dict[str, Any]], name: str = "aircraft", per_second: int = 1) -> dict[str, Any]:
+    return {"now": (NOW_S + k) * per_second, "messages": 1_000 + k, name: aircraft}
+
+
+def write(tmp_path: Path, text: str, name: str = "aircraft.json") -> Path:
+    (tmp_path / name).write_text(text, encoding="utf-8")
+    return tmp_path / name
+
+
+def two_and_silent(k: int) -> list[dict[str, Any]]:
+    """Two aircraft, and one that has not sent a position."""
+    return [
+        state(k),
+        state(k, hex="3c6445", lon=3.0, flight="DLH8 ", nac_p=9),
+        {"hex": "3c6446", "type": "adsb_icao", "mlat": [], "seen": 0.1},
+    ]
+
+
+@pytest.mark.parametrize(("name", "per_second"), [("aircraft", 1), ("ac", 1000)])
+def test_a_snapshot_of_all_aircraft_has_one_row_a_track_at_its_time(tmp_path: Path, name: str, per_second: int) -> None:
+    reading = read(write(tmp_path, json.dumps(snapshot(0, two_and_silent(0), name, per_second), indent=1)))
+    assert reading.epochs["track"].to_list() == ["3c6444", "3c6445"]
+    assert reading.epochs["time_ns"].to_list() == [GPS_NOW_NS] * 2
+    assert reading.epochs["nac_p"].to_list() == [10.0, 9.0]
+    assert reading.epochs["position_time_ns"].to_list() == [GPS_NOW_NS - 250_000_000] * 2
+    assert reading.source.n_rows == 3
+    assert [(each.reason, each.count) for each in reading.rejected] == [("lat: empty", 1)]
+    assert reading.left_out["track"].to_list() == ["3c6446"]
+
+
+@pytest.mark.parametrize("joined", ["lines", "list", "files"])
+def test_several_snapshots_are_the_rows_of_their_aircraft(tmp_path: Path, joined: str) -> None:
+    taken = [snapshot(k, two_and_silent(k)) for k in range(12)]
+    if joined == "files":
+        files = [write(tmp_path, json.dumps(each), f"a{k}.json") for k, each in enumerate(taken)]
+    else:
+        files = [write(tmp_path, json.dumps(taken) if joined == "list" else "\n".join(map(json.dumps, taken)))]
+    (tmp_path / "single").mkdir()
+    of_lines = lines(tmp_path / "single", [state(k) for k in range(12)])
+    run, single = navbound.analyze(files), navbound.analyze(of_lines)
+    assert run.epochs["track"].unique().sort().to_list() == ["3c6444", "3c6445"]
+    names = ["time_ns", "est_lat_rad", "est_lon_rad", "status", "cov_ee_m2"]
+    assert run.epochs.filter(pl.col("track") == "3c6444").select(names).equals(single.epochs.select(names))
+    assert set(run.epochs["status"]) == {"ok"}
+
+
+def test_an_aircraft_whose_last_position_stands_apart_leaves_the_others_their_age(tmp_path: Path) -> None:
+    lost = {"hex": "3c6446", "type": "adsb_icao", "lastPosition": {"lat": 48.0, "lon": 2.0, "nic": 8, "rc": 186, "seen_pos": 70.5}}
+    reading = read(write(tmp_path, json.dumps(snapshot(0, [lost, state(0), state(0, hex="3c6445", seen_pos=1.5)]))))
+    assert reading.epochs.select("track", "position_time_ns").rows() == [
+        ("3c6444", GPS_NOW_NS - 250_000_000),
+        ("3c6445", GPS_NOW_NS - 1_500_000_000),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (snapshot(0, []), "a list of no aircraft"),
+        (snapshot(0, [{"hex": "3c6444", "now": 1}]), "no object without “now”"),
+        (snapshot(0, [1]), "no object without “now”"),  # type: ignore[list-item]
+        ([snapshot(0, [state(0)]), state(1)], "the object 2 is no list of aircraft"),
+        ({"now": True, "aircraft": []}, "neither a column"),
+        ({"now": "today", "aircraft": []}, "neither a column"),
+    ],
+)
+def test_what_is_no_snapshot_is_refused_in_words(tmp_path: Path, content: object, says: str) -> None:
+    with pytest.raises(FormatError, match=says):
+        read(write(tmp_path, json.dumps(content)))
+
+
+def test_columns_of_a_list_each_are_a_table_whatever_their_names(tmp_path: Path) -> None:
+    columns = {"now": [NOW_S, NOW_S + 1], "lat": [48.0, 48.0009], "lon": [2.0, 2.0], "aircraft": ["D-AIPA", "D-AIPA"]}
+    assert read(write(tmp_path, json.dumps(columns))).epochs.height == 2

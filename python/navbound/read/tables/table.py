@@ -13,7 +13,7 @@ import polars as pl
 
 from navbound.errors import FormatError
 from navbound.read.checks.rejections import Rejections
-from navbound.read.tables import trace
+from navbound.read.tables import readsb
 from navbound.read.tables.memory import require_free
 from navbound.storage import packed
 
@@ -294,14 +294,17 @@ def _json(source: Source) -> Table:
         raise FormatError(source.path, "not a table: JSON nested too deeply") from e
     rejections = Rejections(source.path, "record")
     if isinstance(data, dict) and isinstance(data.get("trace"), list):
-        columns = trace.columns_of(source, data)
+        columns = readsb.columns_of(source, data)
+    elif readsb.is_snapshot(data):
+        columns = _records(source, readsb.records_of(source.path, [data]))
     elif isinstance(data, dict):
         rows = {tuple(values) for values in data.values() if isinstance(values, dict)}
         if len(rows) > 1:
             raise FormatError(source.path, "not a table: its columns name different rows")
         columns = {name: _column(source, name, values) for name, values in data.items()}
     else:
-        columns = _records(source, data)
+        joined = isinstance(data, list) and bool(data) and readsb.is_snapshot(data[0])
+        columns = _records(source, readsb.records_of(source.path, data) if joined else data)
     require_few(source.path, len(columns))
     lengths = {len(values) for values in columns.values()}
     if len(lengths) != 1:

@@ -157,6 +157,9 @@ class Values:
             self.tally.add(
                 LEVELS + place, f"{heading}: {levels.REASON}", where.height, where[LINE][0], str(where[heading][0]), kind="quiet"
             )
+        if self._dated is not None and no_field(frame.schema[self._dated.name]):
+            # `lastPosition` of readsb is an object and no time.
+            self._dated = None
         part = self._with_age(self._with_unread(self._callsigns.as_tracks(part), frame), frame)
         part = _with_speed(self._further.see(part, frame), self._mapping.absent).with_columns(*_reasons(frame, against), *self._raw(frame))
         for name in POSITION:
@@ -243,8 +246,6 @@ class Values:
 
     def _raw(self, frame: pl.DataFrame) -> list[pl.Series]:
         self._facts.append(TimeFacts.of(frame, self._mapping.times))
-        if self._dated is not None and no_field(frame.schema[self._dated.name]):
-            self._dated = None
         dated = [] if self._dated is None else [self._dated]
         self._facts_dated += [TimeFacts.of(frame, [column]) for column in dated]
         columns = {column.name: frame[column.name] for column in (*self._mapping.times, *dated)} | self._further.times(frame)

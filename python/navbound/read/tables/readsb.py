@@ -1,4 +1,4 @@
-"""The trace of one aircraft as readsb and its web services write it, to columns."""
+"""Files of readsb, dump1090 and their web services: the trace of one aircraft to columns, the states of all at one time to records."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from navbound.errors import FormatError
 from navbound.read.own_positions import OfTrace
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from navbound.read.source import Source
 
 
@@ -60,3 +62,39 @@ def _is_geometric(row: list[Any]) -> bool:
 def _geometric(row: list[Any]) -> Any:
     stated = row[10] if len(row) > 10 else None
     return row[3] if stated is None and _is_geometric(row) and row[3] != "ground" else stated
+
+
+_LISTS = ("aircraft", "ac")
+"""Names of the list: `aircraft` in the files of the decoders, `ac` from web services of readsb. Provenance: inferred."""
+_NOW, _NOW_MS, _LEAST_MS = "now", "timestamp_ms", 1e11
+"""The time in seconds, the name of the column of one in milliseconds, and the least number that is one: seconds are of the year 5138."""
+
+
+def is_snapshot(value: Any) -> bool:
+    """Whether an object is one: a number that is the time, and the list."""
+    if not isinstance(value, dict) or isinstance(value.get(_NOW), bool) or not isinstance(value.get(_NOW), (int, float)):
+        return False
+    return any(isinstance(value.get(name), list) for name in _LISTS)
+
+
+def records_of(path: Path, snapshots: list[Any]) -> list[dict[str, Any]]:
+    """An aircraft a record, with the time of its snapshot.
+
+    Raises
+    ------
+    FormatError
+        What is no snapshot among them, an aircraft that is no object or states a time of its own, or no aircraft at all.
+    """
+    records = list[dict[str, Any]]()
+    for number, snapshot in enumerate(snapshots, 1):
+        if not is_snapshot(snapshot):
+            raise FormatError(path, f"the object {number} is no list of aircraft with a time, as the first is", field=_LISTS[0])
+        name = next(name for name in _LISTS if isinstance(snapshot.get(name), list))
+        time = _NOW if snapshot[_NOW] < _LEAST_MS else _NOW_MS
+        for aircraft in snapshot[name]:
+            if not isinstance(aircraft, dict) or _NOW in aircraft:
+                raise FormatError(path, f"an aircraft of “{name}” in the object {number} is no object without “{_NOW}”", field=name)
+            records.append({time: snapshot[_NOW]} | aircraft)
+    if not records:
+        raise FormatError(path, "a list of no aircraft", field=_LISTS[0])
+    return records
