@@ -25,6 +25,17 @@ SAME_BOUND = 0.01
 CLOCK_STANDS = 10
 """Rows of one time from which on the clock stands: logs that are joined twice repeat a row once. [1] Provenance: ours."""
 
+STEP_S = 1.0
+"""Step of stamps that are whole seconds: within it two positions of one stamp may be two fixes. [s]"""
+
+MOVING_MPS = 15.0
+"""Reported speed from which they may be; what stands or creeps is in one place for a second. [m/s] Provenance: ours."""
+
+FASTER, AHEAD_M, ASIDE, CLIMB, HEIGHTS_M = 1.25, 5.0, 0.05, 0.25, 8.0
+"""How far the second of them may lie from the first, with the larger reported speed v: ahead by `FASTER` v and `AHEAD_M`, aside and
+behind by `ASIDE` v and `AHEAD_M`, in height by `CLIMB` v and `HEIGHTS_M`. [1, m, 1, 1, m] Provenance: ours; steps of the coding of a
+position and of 25 ft, a turn of 17 m/s2, a reported direction that is 3 degrees off."""
+
 BOUNDS = ("sigma_e_m", "sigma_n_m", "sigma_u_m", "epu_m", "rc_m", "nac_p", "nic", "nuc_p", "hpl_m", "vpl_m", "hpe_m", "vpe_m")
 """What a row states of its accuracy or its bound, beside its covariance."""
 
@@ -52,27 +63,35 @@ class Repeats:
     identical, contradicting : DataFrame
         Rows left out: those that repeat the kept row of their time, and those with another position, bound or status,
         or of a clock that stands.
+    earlier : DataFrame
+        Rows left out whose aircraft flew on within the same second, to the position that is kept.
     """
 
     epochs: pl.DataFrame
     identical: pl.DataFrame
     contradicting: pl.DataFrame
+    earlier: pl.DataFrame
 
 
-def separate(epochs: pl.DataFrame) -> Repeats:
+def separate(epochs: pl.DataFrame, *, whole_seconds: bool = False) -> Repeats:
     """One row a time out of rows sorted by track and time.
 
     Two rows of one time contradict each other where their positions lie further apart than `SAME_PLACE_M` (``position_jump``: no vehicle
     is in two places), or where both state an accuracy, a bound, an error or a true position and these differ (``invalid_number``). Nobody
     knows which of them is right, so the epoch is not believed. Where only the statuses differ, the graver counts; an alert of any of them
     counts; and of rows with errors and levels one whose error is above its level: no recorded hazard is left out.
+
+    Where all stamps of the file are rounded to `whole_seconds` two fixes of one second share a stamp. A position that lies where the
+    reported speed and direction lead within it is one of them, and the later one in the file counts.
     """
     key = ["track", "time_ns"]
     again = (pl.all_horizontal(pl.col(k) == pl.col(k).shift(1) for k in key)).fill_null(value=False)
     if not epochs.select(again.any()).item():
-        return Repeats(epochs, epochs.clear(), epochs.clear())
-    epochs = _with_every_alert(_gravest_first(epochs.with_columns(_hazard(epochs).alias("__hazard")), key), key)
-    place, bound = _other_place(epochs, key), _other_bound(epochs, key)
+        return Repeats(epochs, epochs.clear(), epochs.clear(), epochs.clear())
+    flown = _flown(epochs, key) if whole_seconds else pl.lit(value=False)
+    epochs = _later_first(epochs.with_columns(_hazard(epochs).alias("__hazard"), flown.alias("__flown")), key)
+    epochs = _with_every_alert(_gravest_first(epochs, key), key)
+    place, bound = _other_place(epochs, key) & ~pl.col("__flown"), _other_bound(epochs, key)
     status_differs = _differs("status", key) if "status" in epochs.columns else pl.lit(value=False)
     marked = epochs.with_columns(again.alias("__again"), place.alias("__place"), bound.alias("__bound"), status_differs.alias("__status"))
     doubted = _completed(marked, key).with_columns(pl.col("__place", "__bound").any().over(key)).filter(~pl.col("__again"))
@@ -81,8 +100,8 @@ def separate(epochs: pl.DataFrame) -> Repeats:
     # A time that repeats so often is no second copy of a row: the clock stands, and its rows are epochs of unknown times.
     stands = pl.len().over(key) >= CLOCK_STANDS
     contradicts = repeated.select(pl.any_horizontal("__place", "__bound", "__status", stands)).to_series()
-    plain = repeated.drop(_MARKS)
-    return Repeats(kept, plain.filter(~contradicts), plain.filter(contradicts))
+    plain, earlier = repeated.drop(_MARKS), repeated["__flown"] & ~contradicts
+    return Repeats(kept, plain.filter(~contradicts & ~earlier), plain.filter(contradicts), plain.filter(earlier))
 
 
 def _completed(epochs: pl.DataFrame, key: list[str]) -> pl.DataFrame:
@@ -93,7 +112,7 @@ def _completed(epochs: pl.DataFrame, key: list[str]) -> pl.DataFrame:
     return epochs.with_columns(*others, *speed)
 
 
-_MARKS = ("__again", "__place", "__bound", "__status", "__hazard")
+_MARKS = ("__again", "__place", "__bound", "__status", "__hazard", "__flown")
 _UNKNOWN_BOUND = pl.col("__bound") & ~pl.col("__hazard")
 _REASON = pl.struct(
     reason_id=pl.when("__place").then(pl.lit("position_jump")).when(_UNKNOWN_BOUND).then(pl.lit("invalid_number")),
@@ -119,6 +138,37 @@ def _with_every_alert(epochs: pl.DataFrame, key: list[str]) -> pl.DataFrame:
     if ALERT not in epochs.columns:
         return epochs
     return epochs.with_columns(pl.col(ALERT).drop_nulls().first().over(key))
+
+
+def _later_first(epochs: pl.DataFrame, key: list[str]) -> pl.DataFrame:
+    """Of the fixes of one second the last of the file first."""
+    order = pl.int_range(pl.len())
+    within = pl.when("__flown").then(-order).otherwise(order).alias("__order")
+    return epochs.with_columns(within).sort(*key, "__order").drop("__order")
+
+
+def _flown(epochs: pl.DataFrame, key: list[str]) -> pl.Expr:
+    """Rows of a time with several positions, of which each lies where the aircraft, from the first of them, was within `STEP_S`."""
+    have = set(epochs.columns)
+    # Whoever states a covariance or its deviations solved the position for its stamp.
+    if not {"est_lat_rad", "est_lon_rad", "ground_speed_mps", "ground_track_rad"} <= have or have & {*COVARIANCE, "sigma_e_m", "sigma_n_m"}:
+        return pl.lit(value=False)
+    lat, lon, track = pl.col("est_lat_rad"), pl.col("est_lon_rad"), pl.col("ground_track_rad")
+    north = EARTH_RADIUS_M * (lat - lat.first())
+    east = EARTH_RADIUS_M * lat.cos() * ((lon - lon.first()) / 2).sin() * 2
+    way = pl.col("ground_speed_mps").max() * STEP_S
+    off = ASIDE * way + AHEAD_M
+    ahead, aside = north * track.cos() + east * track.sin(), east * track.cos() - north * track.sin()
+    on_the_way = ahead.is_between(-off, FASTER * way + AHEAD_M) & (aside.abs() <= off)
+    if "est_h_m" in epochs.columns:
+        on_the_way &= ((pl.col("est_h_m") - pl.col("est_h_m").drop_nulls().first()).abs() <= CLIMB * way + HEIGHTS_M).fill_null(value=True)
+    if "altitude_m" in epochs.columns:
+        altitude = pl.col("altitude_m")
+        on_the_way &= ((altitude - altitude.drop_nulls().first()).abs() <= SAME_ALTITUDE_M).fill_null(value=True)
+    # What reports no speed or no direction lies nowhere on the way.
+    every = (on_the_way & pl.col("ground_speed_mps").is_not_null()).fill_null(value=False).all()
+    several = (north**2 + east**2 > SAME_PLACE_M**2).any()
+    return (every & several & (way >= MOVING_MPS * STEP_S) & (pl.len() < CLOCK_STANDS)).over(key)
 
 
 def _gravest_first(epochs: pl.DataFrame, key: list[str]) -> pl.DataFrame:

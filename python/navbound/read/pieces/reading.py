@@ -50,6 +50,8 @@ class PiecedReading:
         Columns, or words of columns, that speak of integrity by their name and are not understood.
     position_doubts : list of str
         Columns whose numbers may be in another unit than they are read in.
+    whole_seconds : bool
+        Two fixes of one second may share a stamp.
     """
 
     source: InputFile
@@ -64,6 +66,7 @@ class PiecedReading:
     n_rows: int
     unread: list[str]
     position_doubts: list[str]
+    whole_seconds: bool
 
     @property
     def rejected(self) -> list[Rejection]:
@@ -80,7 +83,7 @@ class PiecedReading:
         """
         tally, contradicting = Tally(), list[pl.DataFrame]()
         for piece in self.pieces:
-            separated = one_row_a_time(piece, tally)
+            separated = one_row_a_time(piece, tally, whole_seconds=self.whole_seconds)
             contradicting.append(left_out(separated.contradicting))
             yield separated.epochs.drop(LINE)
         tally.into(self.rejections)
@@ -94,7 +97,8 @@ class PiecedReading:
             names = [track for track, (low, high) in spans.items() if low <= index <= high]
             rows = self.pieces.piece(index) if names else pl.DataFrame()
             rows = rows if rows.is_empty() else rows.filter(pl.col("track").is_in(names))
-            for part in [] if rows.is_empty() else one_row_a_time(rows, Tally()).epochs.partition_by("track", maintain_order=True):
+            single = rows if rows.is_empty() else one_row_a_time(rows, Tally(), whole_seconds=self.whole_seconds).epochs
+            for part in [] if single.is_empty() else single.partition_by("track", maintain_order=True):
                 yield part
                 if "ground_speed_mps" in part.columns and part["ground_speed_mps"].is_not_null().any():
                     del spans[part["track"][0]]
@@ -285,6 +289,7 @@ def _second_pass(first: _FirstPass, every: int) -> PiecedReading:
         n_rows=first.n_rows,
         unread=values.unread,
         position_doubts=values.position_doubts,
+        whole_seconds=values.whole_seconds and first.beside is None,
     )
 
 

@@ -127,16 +127,17 @@ def _read(
     mapping = assign(content.columns, columns, source.path, needs=needs, texts=texts(content.frame), where_present=where_present)
     if source.kind == "csv":
         require_same_in_remarks(source.text(), mapping, source.path)
-    return _epochs(source, content, mapping, [name for name in POSITION if name in needs])
+    return _epochs(source, content, mapping, [name for name in POSITION if name in needs], beside=beside)
 
 
-def _epochs(source: Source, content: Table, mapping: Assignment, required: Sequence[str]) -> Reading:
+def _epochs(source: Source, content: Table, mapping: Assignment, required: Sequence[str], *, beside: bool) -> Reading:
     rejections, values = content.rejections, Values(source.path, source.stem, mapping, required)
     part = values.take(content.frame)
     values.understand()
     out, without = values.timed(part)
     values.tally.into(rejections)
-    out, contradicting = _in_order(out, rejections, values.notes)
+    # A truth is of its stamp.
+    out, contradicting = _in_order(out, rejections, values.notes, whole_seconds=values.whole_seconds and not beside)
     rejections.refuse_if_too_many(content.n_rows)
     _not_empty(source, out, rejections)
     lost = pl.concat([without, left_out(contradicting)])
@@ -211,7 +212,9 @@ def _not_empty(source: Source, out: pl.DataFrame, rejections: Rejections) -> Non
         raise FormatError(source.path, f"no row holds a time, a latitude and a longitude{rejections.in_words()}")
 
 
-def _in_order(out: pl.DataFrame, rejections: Rejections, notes: list[str]) -> tuple[pl.DataFrame, pl.DataFrame]:
+def _in_order(
+    out: pl.DataFrame, rejections: Rejections, notes: list[str], *, whole_seconds: bool = False
+) -> tuple[pl.DataFrame, pl.DataFrame]:
     """One row an instant, in the order of time; a repeated instant of a track is left out and counted. Second: rows that contradict."""
     # Those of a table are null already.
     out, without = levels.without_bound(out)
@@ -221,6 +224,6 @@ def _in_order(out: pl.DataFrame, rejections: Rejections, notes: list[str]) -> tu
     late, tally = Late(), Tally()
     late.see(out)
     notes += late.words(rejections.path, rejections.unit)
-    separated = one_row_a_time(out, tally)
+    separated = one_row_a_time(out, tally, whole_seconds=whole_seconds)
     tally.into(rejections)
     return separated.epochs, separated.contradicting

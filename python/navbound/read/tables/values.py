@@ -103,6 +103,8 @@ class Values:
         Doubts; whole once the times are understood.
     position_doubts : list of str
         Columns whose numbers may be in another unit than they are read in, so that nothing can be shown until it is stated.
+    whole_seconds : bool
+        All times so far are whole seconds.
     """
 
     def __init__(self, path: Path, stem: str, mapping: Assignment, required: Sequence[str]) -> None:
@@ -110,7 +112,7 @@ class Values:
         self._path, self._stem, self._mapping, self._required = path, stem, mapping, required
         self._dated = position_time(mapping.unused)
         self._further = Further(path, mapping)
-        self._nowhere = Nowhere()
+        self._nowhere, self.whole_seconds = Nowhere(), True
         self._callsigns = Callsigns()
         self._alone = pl.DataFrame(schema={"track": pl.String, LINE: pl.Int64, "spoken_ns": pl.Int64, "spoken_mps": pl.Float64})
         self._facts, self._facts_dated = list[TimeFacts](), list[TimeFacts]()
@@ -368,6 +370,7 @@ class Values:
             valid_ns = pl.col("time_ns") - (pl.col(_AGE) * 1e9).round().cast(pl.Int64)
             out = out.with_columns(valid_ns.alias(POSITION_TIME)).drop(_AGE)
         out = self._with_speeds_alone(out.with_columns(self._track(out)))
+        self.whole_seconds &= bool((out["time_ns"].drop_nulls() % 1_000_000_000 == 0).all())
         without = out.filter(pl.col(_BAD).is_not_null())
         for (reason_text,), group in without.group_by(_BAD, maintain_order=True):
             kind: Kind = "quiet" if str(reason_text).endswith(": empty") or reason_text == NO_PLACE else "row"
@@ -474,13 +477,14 @@ class Late:
         return [f"{path.name}: {n} rows stood after a later one of their track and were put in order of time (first: {first})"]
 
 
-def one_row_a_time(out: pl.DataFrame, tally: Tally) -> Repeats:
+def one_row_a_time(out: pl.DataFrame, tally: Tally, *, whole_seconds: bool = False) -> Repeats:
     """Rows in the order of track and time, one an instant; the others are counted."""
-    separated = separate(out.sort("track", "time_ns", maintain_order=True))
+    separated = separate(out.sort("track", "time_ns", maintain_order=True), whole_seconds=whole_seconds)
     reason = "time repeated within a track"
     kinds = {
         reason: separated.identical,
         f"{reason} with another position, bound or status, or by a clock that stands": separated.contradicting,
+        f"{reason} by a fix that was flown on from within the same second; the later one counts": separated.earlier,
     }
     for place, (words, repeated) in enumerate(kinds.items()):
         if not repeated.is_empty():
