@@ -176,3 +176,17 @@ def test_a_remark_of_another_unit_refuses_the_file(tmp_path: Path, remark: str) 
     with pytest.raises(FormatError, match="states the unit “nm” of “epu”"):
         read_pieces(tmp_path / "track.csv")
     assert read(table(tmp_path, "# units: epu [m]\ntime,lat,lon,epu", "{t},47.0,8.{t},0.9")).epochs["epu_m"].to_list() == [0.9] * 3
+
+
+def test_a_refusal_names_every_column_that_may_be_the_one_it_misses(tmp_path: Path) -> None:
+    names = [f"voltage{k}" for k in range(12)] + ["moment"]
+    with pytest.raises(FormatError, match="time: no column holds it") as refusal:
+        read(table(tmp_path, ",".join((*names, "lat", "lon")), ",".join(["{t}"] * 13 + ["47.0", "8.0"])))
+    assert all(name in str(refusal.value) for name in (*names, "lat", "lon"))
+    assert " more;" not in str(refusal.value)
+
+
+def test_a_refusal_names_no_more_columns_than_a_person_reads(tmp_path: Path) -> None:
+    names = [f"voltage{k}" for k in range(98)]
+    with pytest.raises(FormatError, match="and 70 more;"):
+        read(table(tmp_path, ",".join((*names, "lat", "lon")), ",".join(["{t}"] * 98 + ["47.0", "8.0"])))

@@ -38,6 +38,8 @@ _LONGEST_NAME = 80
 """Longer names are compared with nothing: likeness takes quadratic time. [1]"""
 _MOST_COMPARED = 1000
 """Columns whose names are compared with the known ones. [1]"""
+_MOST_SHOWN = 30
+"""Columns that a refusal names, the nearest to a known name first: the one that is looked for may have a name like none. [1]"""
 
 
 @dataclass(frozen=True)
@@ -463,7 +465,7 @@ def _require(columns: dict[str, Column], times: list[Column], names: list[str], 
             continue
         short = [n for n in names if len(n) <= _LONGEST_NAME][:_MOST_COMPARED]
         near = {n: max(difflib.SequenceMatcher(None, _plain(n)[0], a).ratio() for a in known) for n in short}
-        best = sorted(short, key=lambda n: -near[n])[:5]
+        best = sorted(short, key=lambda n: -near[n])[:_MOST_SHOWN]
         if not best:
             raise FormatError(path, "the first line names no columns: a table begins with their names", 1, need)
         others = f" and {len(names) - len(best)} more" if len(names) > len(best) else ""
