@@ -64,9 +64,26 @@ def test_a_row_of_a_speed_alone_is_heard(tmp_path: Path, every: int) -> None:
     assert whole.epochs["status"].to_list() == pieces.epochs["status"].to_list()
 
 
+def split(folder: Path, every_s: float) -> Path:
+    """One velocity a row, in turn."""
+    lines = ["time_s,lat_deg,lon_deg,nac_p,vel_n_mps,vel_e_mps"]
+    for k in range(N):
+        each = stand(k)
+        velocities = ",85.0" if k % 2 else "85.0,"
+        lines.append(f"{1_700_000_000 + every_s * k},{each['lat_deg']:.9f},2.0,10,{velocities}")
+    path = folder / f"{every_s:g}.csv"
+    path.write_text("\n".join(lines) + "\n", encoding="ascii")
+    return path
+
+
 def test_one_velocity_a_row_is_a_speed(tmp_path: Path) -> None:
-    rows = [stand(k) | {"vel_n_mps": None, "vel_e_mps": None} | {"vel_e_mps" if k % 2 else "vel_n_mps": 85.0} for k in range(N)]
-    assert n_stale(judged(tmp_path / "a.json", rows)) > 0.9 * N
+    whole = navbound.analyze(split(tmp_path, 1.0))
+    assert n_stale(whole) > 0.9 * N
+    for piece_rows in (1, 29):
+        pieces = navbound.analyze(split(tmp_path, 1.0), piece_rows=piece_rows)
+        assert whole.epochs.select("status", "ground_speed_mps").equals(pieces.epochs.select("status", "ground_speed_mps"))
+    # The other velocity of more than ten seconds ago is none of now.
+    assert navbound.analyze(split(tmp_path, 11.0)).epochs["ground_speed_mps"].null_count() == N
 
 
 @pytest.mark.parametrize(("age_s", "reported"), [(-1.0, 0), (-2.5, N), (-3600.0, N)])

@@ -14,7 +14,7 @@ use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Constellation, SatelliteId};
 use navbound_core::solution::constellations::{Constellations, Treatment};
 use navbound_core::solution::declared::{Declarations, Doubt};
-use navbound_core::solution::led_off::Compared;
+use navbound_core::solution::led_off::{Compared, Comparisons};
 use navbound_core::solution::mixture::Mixture;
 use navbound_core::solution::point::{self, Fix, Offsets, Range, Settings, Used};
 use navbound_core::solution::rivals::Rival;
@@ -98,8 +98,8 @@ pub struct Positions {
     pub codes: BTreeMap<char, Vec<String>>,
     /// Share of the pseudoranges that the carrier smoothed, those at the beginning of an arc left out; `None` without smoothing.
     pub smoothed_share: Option<f64>,
-    /// Epochs whose codes were compared with their phases, and how often a lead that stood was dropped.
-    pub n_compared: [usize; 2],
+    /// What was made of codes against their phases.
+    pub comparisons: Comparisons,
 }
 
 impl Positions {
@@ -278,7 +278,7 @@ fn declare(source: &Source<'_>, solved: Vec<Solved>, job: &Job, out: &mut Positi
         out.fixes.push(fix);
         out.doubts.push(doubt);
     }
-    out.n_compared = [phases.n_compared(), phases.n_dropped()];
+    out.comparisons = phases.comparisons();
 }
 
 /// What a monitor made of a receiver's epochs.
@@ -292,8 +292,8 @@ pub struct Watch<T> {
     pub signals: BTreeMap<char, &'static str>,
     /// Share of the pseudoranges that the carrier smoothed; `None` without smoothing.
     pub smoothed_share: Option<f64>,
-    /// Epochs whose codes were compared with their phases, and how often a lead that stood was dropped.
-    pub n_compared: [usize; 2],
+    /// What was made of codes against their phases.
+    pub comparisons: Comparisons,
     /// Epochs whose codes moved together as their phases did not.
     led_off: Vec<bool>,
 }
@@ -337,14 +337,15 @@ pub fn each_epoch<D, T: Send>(
     let outcomes: Vec<_> = epochs.par_chunks(EPOCHS_PER_TASK).map(task).collect();
     let smoothed_share = smoothed.as_ref().map(Smoothed::share);
     let (signals, tally, led_off) = (names(&plans), Tally::default(), Vec::new());
-    let mut watch = Watch { epochs: Vec::with_capacity(epochs.len()), tally, signals, smoothed_share, n_compared: [0; 2], led_off };
+    let mut watch =
+        Watch { epochs: Vec::with_capacity(epochs.len()), tally, signals, smoothed_share, comparisons: Comparisons::default(), led_off };
     for (results, tally) in outcomes {
         watch.epochs.extend(results);
         watch.tally.add(&tally);
     }
     let mut phases = Compare::new(&source);
     watch.led_off = watch.epochs.iter().enumerate().map(|(epoch, one)| phases.next(epoch, compared(one)).is_some()).collect();
-    watch.n_compared = [phases.n_compared(), phases.n_dropped()];
+    watch.comparisons = phases.comparisons();
     watch
 }
 

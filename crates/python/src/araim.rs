@@ -269,7 +269,7 @@ pub(crate) fn unmonitored(navigation: &Navigation, systems: &str, dual: bool, ma
 pub(crate) fn beside<T>(d: &Bound<'_, PyDict>, watch: &Watch<T>, consistency: impl Fn(&T) -> Option<Consistency>) -> PyResult<()> {
     satellites(d, &watch.tally, &watch.signals)?;
     d.set_item("smoothed_share", watch.smoothed_share)?;
-    d.set_item("n_compared", watch.n_compared)?;
+    d.set_item("compared", (watch.comparisons.n_compared, watch.comparisons.n_dropped))?;
     let rows: Vec<_> = watch.epochs.iter().map(consistency).collect();
     for (name, of) in [("statistic", (|c| c.statistic) as fn(&Consistency) -> [f64; 5]), ("redundancy", |c| c.redundancy)] {
         let flat: Vec<f64> = rows.iter().flat_map(|c| c.as_ref().map_or([f64::NAN; 5], of)).collect();

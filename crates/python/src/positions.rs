@@ -63,7 +63,7 @@ fn solve_positions<'py>(
     let solved = py.detach(|| positions(&observations.0, &navigation.records, precise.map(PreciseOrbits::tables), &job));
     let d = table(py, &solved, errors.name)?;
     d.set_item("smoothed_share", solved.smoothed_share)?;
-    d.set_item("n_compared", solved.n_compared)?;
+    d.set_item("compared", (solved.comparisons.n_compared, solved.comparisons.n_dropped))?;
     d.set_item("ionosphere", model_name(&model))?;
     d.set_item("ranges", if keep_ranges { Some(kept_ranges(py, &solved)?) } else { None })?;
     d.set_item("heard", if keep_ranges { Some(heard(py, &solved)?) } else { None })?;

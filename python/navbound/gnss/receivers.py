@@ -241,7 +241,7 @@ def solve(
     used = used_satellites(positions.pop("used"))
     unused, codes, weights = positions.pop("unused"), positions.pop("codes"), positions.pop("weights")
     share, model = positions.pop("smoothed_share"), positions.pop("ionosphere")
-    n_compared = positions.pop("n_compared")
+    compared = positions.pop("compared")
     name = track or observations.marker or observations.path.name
     columns = {"track": [name] * observations.n_epochs, "time_ns": observations.time_ns, **positions}
     epochs = pl.DataFrame(columns).with_columns(pl.col("reason", "reason_id").replace({"": None}))
@@ -258,7 +258,7 @@ def solve(
         "troposphere": "Saastamoinen, standard atmosphere, 50 % humidity; mapping of DO-229",
         "weights": weights if weights != "scaled" else f"calibrated-2020 times {range_factor:g} (ranges), {shared_factor:g} (shared)",
         "residual test": f"chi-square, false alarm {false_alarm:g} an epoch",
-        "codes led off": compared_words(n_compared, observations.n_epochs),
+        "codes led off": compared_words(compared, observations.n_epochs),
     }
     ranges = None if kept is None else _with_times(kept, observations.time_ns)
     return Positions(epochs, unused, codes, models, ranges, used, _heard(heard, ranges, name, observations.time_ns))

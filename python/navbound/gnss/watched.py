@@ -104,7 +104,7 @@ def watched(
         "smoothing": "none" if share is None else f"divergence-free, {100 * share:.1f} % of the pseudoranges",
         "satellites not used (satellite-epochs)": unused_words(recorded["unused"]),
         "fit of the error model": fit.words,
-        "codes led off": compared_words(recorded["n_compared"], observations.n_epochs),
+        "codes led off": compared_words(recorded["compared"], observations.n_epochs),
     }
     return Watched(epochs if truth_ecef_m is None else with_errors(epochs, truth_ecef_m), models, recorded["unused"], used, fit)
 

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use navbound_core::quantity::Metres;
 use navbound_core::signal::smoothing::divergence_free;
 use navbound_core::signal::{Carrier, Constellation};
-use navbound_core::solution::led_off::{CodesAgainstPhases, Compared, Heard};
+use navbound_core::solution::led_off::{CodesAgainstPhases, Compared, Comparisons, Heard};
 use navbound_formats::rinex::Observations;
 
 const SYSTEMS: usize = Constellation::ALL.len();
@@ -40,14 +40,9 @@ impl<'a> Compare<'a> {
         self.codes.judge(self.observations.time[epoch], used?.iter().copied())
     }
 
-    /// How many epochs were compared.
-    pub(crate) const fn n_compared(&self) -> usize {
-        self.codes.n_compared()
-    }
-
-    /// How often a lead that stood was dropped.
-    pub(crate) const fn n_dropped(&self) -> usize {
-        self.codes.n_dropped()
+    /// What was made of the epochs.
+    pub(crate) const fn comparisons(&self) -> Comparisons {
+        self.codes.comparisons()
     }
 
     fn hear(&mut self, epoch: usize) {

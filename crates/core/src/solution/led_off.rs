@@ -86,6 +86,15 @@ struct Arc {
 
 const NOTHING: Arc = Arc { seen: None, track: 0, diverges: true, less_phase_m: f64::NAN, reference_m: f64::NAN };
 
+/// What was made of a recording's epochs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Comparisons {
+    /// Epochs that were compared: enough satellites with an unbroken phase, and residuals that fit.
+    pub n_compared: usize,
+    /// How often a shift that stood was dropped, since hardly any phase went on: whether it went on nothing shows.
+    pub n_dropped: usize,
+}
+
 /// The codes of one receiver against their phases, epoch after epoch in time. No heap.
 #[derive(Debug, Clone)]
 pub struct CodesAgainstPhases {
@@ -97,36 +106,29 @@ pub struct CodesAgainstPhases {
     /// What the references have of the noise of shifts before \[m²\].
     inherited: Matrix3<f64>,
     longest_gap_s: f64,
-    n_compared: usize,
-    n_dropped: usize,
+    comparisons: Comparisons,
 }
 
 impl CodesAgainstPhases {
     /// Of a recording with an epoch every `interval_s`.
     #[must_use]
     pub fn new(interval_s: f64) -> Self {
-        let longest_gap_s = LONGEST_GAP_S.max(GAP_INTERVALS * interval_s.min(LONGEST_INTERVAL_S));
+        let of_epochs_s = if interval_s <= LONGEST_INTERVAL_S { GAP_INTERVALS * interval_s } else { 0.0 };
+        let longest_gap_s = LONGEST_GAP_S.max(of_epochs_s);
         Self {
             arcs: [NOTHING; SLOTS],
             since: None,
             standing: None,
             inherited: Matrix3::zeros(),
             longest_gap_s,
-            n_compared: 0,
-            n_dropped: 0,
+            comparisons: Comparisons { n_compared: 0, n_dropped: 0 },
         }
     }
 
-    /// How many epochs were compared: enough satellites with an unbroken phase, and residuals that fit.
+    /// What was made of the epochs.
     #[must_use]
-    pub const fn n_compared(&self) -> usize {
-        self.n_compared
-    }
-
-    /// How often a shift that stood was dropped, since hardly any phase went on: whether it went on nothing shows.
-    #[must_use]
-    pub const fn n_dropped(&self) -> usize {
-        self.n_dropped
+    pub const fn comparisons(&self) -> Comparisons {
+        self.comparisons
     }
 
     /// A satellite that has code and phase at an epoch. All of an epoch before it is judged.
@@ -146,7 +148,7 @@ impl CodesAgainstPhases {
         let age_s = self.since.map_or(f64::INFINITY, |since| time.seconds_since(since));
         let kept = self.arcs.iter().filter(|a| a.reference_m.is_finite() && a.seen.is_some_and(|seen| self.unbroken(time, seen)));
         if kept.count() < COMMON || !(age_s >= 0.0) {
-            self.n_dropped += usize::from(self.standing.take().is_some());
+            self.comparisons.n_dropped += usize::from(self.standing.take().is_some());
             self.renew(time);
             return None;
         }
@@ -163,7 +165,7 @@ impl CodesAgainstPhases {
             n += 1;
         }
         if let Some(fit) = fitting(&mut rows[..n]) {
-            self.n_compared += 1;
+            self.comparisons.n_compared += 1;
             // What stands goes on until the codes have moved back, and not because references become less certain.
             let inherited = if self.standing.is_some() { Matrix3::zeros() } else { self.inherited };
             self.standing = beyond(&fit.shift, &(fit.covariance + inherited)).then_some(fit.shift);

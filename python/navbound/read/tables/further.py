@@ -1,4 +1,7 @@
-"""Further columns of a position, a speed or a time that is read: the order of known names must not decide which of them counts."""
+"""What else a table says of what is read: further columns of a position, a speed or a time, and speeds in other rows than the positions.
+
+The order of known names must not decide which of several columns counts, nor the row in which it stands whether a speed does.
+"""
 
 from __future__ import annotations
 
@@ -8,14 +11,16 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from navbound.errors import FormatError
+from navbound.read.checks.plausible import Limits
 from navbound.read.checks.statements import STALE_AFTER_S
 from navbound.read.tables.cells import largest, no_field, numbers
 from navbound.read.tables.columns import NO_COLUMN, declare
+from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, understand
 from navbound.units import EARTH_RADIUS_M
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Container, Mapping
     from pathlib import Path
 
     from navbound.read.tables.columns import Assignment
@@ -27,6 +32,8 @@ SPEEDS_APART_MPS, SPEEDS_APART = 10.0, 0.1
 SPEEDS_SHARE = 0.2
 """Share of rows from which two speeds that contradict each other leave nothing shown. Provenance: ours. [1]"""
 _VELOCITY = ("vel_n_mps", "vel_e_mps")
+_DIRECTED_MPS = 2.0
+"""Slower velocities have no direction. Provenance: ours. [m/s]"""
 _INDICATORS = ("nac_p", "nic", "nuc_p")
 """Of two columns the smaller counts: the less is claimed."""
 _SCALE_M = {"est_lat_rad": pl.lit(EARTH_RADIUS_M), "est_lon_rad": EARTH_RADIUS_M * pl.col("est_lat_rad").cos()}
@@ -64,7 +71,7 @@ class Further:
                 self._see_speeds(column.name, part[column.quantity], other)
                 part = part.with_columns(pl.max_horizontal(column.quantity, other).alias(column.quantity))
         if {"ground_speed_mps", *_VELOCITY} <= set(part.columns):
-            of_velocity = part.select(speed=pl.sum_horizontal(pl.col(name) ** 2 for name in _VELOCITY).sqrt())["speed"]
+            of_velocity = part.select(speed=(pl.col(_VELOCITY[0]) ** 2 + pl.col(_VELOCITY[1]) ** 2).sqrt())["speed"]
             self._see_speeds(_VELOCITY[0], part["ground_speed_mps"], of_velocity)
         return part
 
@@ -129,3 +136,53 @@ class Further:
             f"{self._path.name}: “{used}” and “{other}” are two columns of {of} and {apart} apart; "
             f"{declare(f'{quantity}={used}')}, or the other; nothing is shown until it is stated"
         )
+
+
+class Speeds:
+    """Makes the speed over the ground of each row, of what it and the rows before it state, in the order of the file and across pieces.
+
+    What a row of the track stated counts for as long as a speed stands in where reports have none.
+    """
+
+    def __init__(self, absent: Container[str]) -> None:
+        self._absent = absent
+        self._last: dict[str, pl.DataFrame] = {}
+
+    def whole(self, rows: pl.DataFrame, *, left_out: pl.Expr) -> pl.DataFrame:
+        """The next rows, with time and track: the largest speed that any column states, and its direction, of velocities where none does.
+
+        A row with one of two velocities has the other of a row before: alone they make no speed. A row that is `left_out` has no position,
+        and the next one without a speed has its.
+        """
+        if set(_VELOCITY) <= set(rows.columns):
+            one = rows.select(pl.col(_VELOCITY[0]).is_null() != pl.col(_VELOCITY[1]).is_null()).to_series()
+            filled = [self._filled(rows, name, of=pl.lit(value=True), to=one) for name in _VELOCITY]
+            rows = _of_velocities(rows.with_columns(filled), self._absent)
+        if "ground_speed_mps" not in rows.columns:
+            return rows
+        every = pl.repeat(value=True, n=rows.height, eager=True)
+        return rows.with_columns(self._filled(rows, "ground_speed_mps", of=left_out, to=every))
+
+    def _filled(self, rows: pl.DataFrame, name: str, *, of: pl.Expr, to: pl.Series) -> pl.Series:
+        """A column, filled at the rows `to` by what the last of the rows `of` states."""
+        line = pl.col(LINE).cast(pl.Int64)
+        spoken = rows.filter(of & pl.col(name).is_finite() & pl.col("time_ns").is_not_null())
+        known = spoken.select("track", line, pl.col("time_ns").alias("spoken_ns"), pl.col(name).alias("spoken"))
+        known = pl.concat([self._last.get(name, known.clear()), known])
+        if known.is_empty():
+            return rows[name]
+        self._last[name] = known.unique("track", keep="last", maintain_order=True).sort(LINE)
+        asked = rows.select("track", line, "time_ns", name, to=to)
+        asked = asked.join_asof(known, on=LINE, by="track", check_sortedness=False)
+        fresh = (pl.col("time_ns") - pl.col("spoken_ns")).is_between(0, int(Limits.latency_s * 1e9))
+        return asked.select(pl.coalesce(name, pl.when(pl.col("to") & fresh).then("spoken")).alias(name)).to_series()
+
+
+def _of_velocities(rows: pl.DataFrame, absent: Container[str]) -> pl.DataFrame:
+    north, east = _VELOCITY
+    of_velocity = (pl.col(north) ** 2 + pl.col(east) ** 2).sqrt()
+    speeds = [pl.col(name) for name in ("ground_speed_mps",) if name in rows.columns]
+    tracks = [pl.col(name) for name in ("ground_track_rad",) if name in rows.columns]
+    whither = pl.when(of_velocity > _DIRECTED_MPS).then(pl.arctan2(east, north))
+    added = [pl.max_horizontal(*speeds, of_velocity).alias("ground_speed_mps"), pl.coalesce(*tracks, whither).alias("ground_track_rad")]
+    return rows.with_columns(each for each in added if each.meta.output_name() not in absent).drop(_VELOCITY)

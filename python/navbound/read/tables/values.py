@@ -12,20 +12,19 @@ from navbound.errors import UNSEEN, FormatError
 from navbound.read import own_positions
 from navbound.read.checks import levels, stated, statements
 from navbound.read.checks.places import NO_PLACE, Nowhere
-from navbound.read.checks.plausible import Limits
 from navbound.read.checks.rejections import Kind, Tally
 from navbound.read.checks.repeats import Repeats, left_out, separate
 from navbound.read.quantities import POSITION_TIME, QUANTITY, UNITS
 from navbound.read.tables.cells import MISSING, largest, no_field, numbers, on_ground, words_of_ground
 from navbound.read.tables.columns import POSITION, Assignment, Column, declare, is_header, position_time
-from navbound.read.tables.further import Further
+from navbound.read.tables.further import Further, Speeds
 from navbound.read.tables.names import Callsigns, one_writing
 from navbound.read.tables.stated_units import is_row_of_units, require_same
 from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, understand, units
 
 if TYPE_CHECKING:
-    from collections.abc import Container, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from navbound.read.checks.statements import Effect, Stated
@@ -57,34 +56,6 @@ def texts(frame: pl.DataFrame) -> set[str]:
     return {name for name, each in written.items() if each.count() and each.cast(pl.Float64, strict=False).count() == 0}
 
 
-_DIRECTED_MPS = 2.0
-"""Slower velocities have no direction. Provenance: ours. [m/s]"""
-
-
-def _with_speed(part: pl.DataFrame, absent: Container[str]) -> pl.DataFrame:
-    """The speed over the ground, the largest that any column states, and its direction, of the velocities where no column states it."""
-    if not {"vel_n_mps", "vel_e_mps"} <= set(part.columns):
-        return part
-    part = _with_both(part)
-    of_velocity = (pl.col("vel_n_mps") ** 2 + pl.col("vel_e_mps") ** 2).sqrt()
-    speeds = [pl.col(name) for name in ("ground_speed_mps",) if name in part.columns]
-    tracks = [pl.col(name) for name in ("ground_track_rad",) if name in part.columns]
-    whither = pl.when(of_velocity > _DIRECTED_MPS).then(pl.arctan2("vel_e_mps", "vel_n_mps"))
-    added = [pl.max_horizontal(*speeds, of_velocity).alias("ground_speed_mps"), pl.coalesce(*tracks, whither).alias("ground_track_rad")]
-    return part.with_columns(each for each in added if each.meta.output_name() not in absent).drop("vel_n_mps", "vel_e_mps")
-
-
-def _with_both(part: pl.DataFrame) -> pl.DataFrame:
-    """A row that states one of two velocities has the other one of the row before that states it: alone they make no speed."""
-    one = pl.col("vel_n_mps").is_null() != pl.col("vel_e_mps").is_null()
-
-    def last(name: str) -> pl.Expr:
-        filled = pl.col(name).forward_fill()
-        return pl.when(one).then(filled.over("track") if "track" in part.columns else filled).otherwise(pl.col(name)).alias(name)
-
-    return part.with_columns(last("vel_n_mps"), last("vel_e_mps"))
-
-
 _WORDY = r"^[\s#\"(\[]*([A-Za-z°]|1e-7 deg|1?\s*$|-\s*$)"
 """A name, a unit, or nothing; never a measured value but the number 1."""
 
@@ -111,10 +82,9 @@ class Values:
         self.tally, self.notes, self.position_doubts = Tally(), list[str](), list[str]()
         self._path, self._stem, self._mapping, self._required = path, stem, mapping, required
         self._dated = position_time(mapping.unused)
-        self._further = Further(path, mapping)
+        self._further, self._speeds = Further(path, mapping), Speeds(mapping.absent)
         self._nowhere, self.whole_seconds = Nowhere(), True
         self._callsigns = Callsigns()
-        self._alone = pl.DataFrame(schema={"track": pl.String, LINE: pl.Int64, "spoken_ns": pl.Int64, "spoken_mps": pl.Float64})
         self._facts, self._facts_dated = list[TimeFacts](), list[TimeFacts]()
         self._dtypes: dict[str, pl.DataType] = {}
         self._n_unknown = 0
@@ -163,7 +133,7 @@ class Values:
             # `lastPosition` of readsb is an object and no time.
             self._dated = None
         part = self._with_age(self._with_unread(self._callsigns.as_tracks(part), frame), frame)
-        part = _with_speed(self._further.see(part, frame), self._mapping.absent).with_columns(*_reasons(frame, against), *self._raw(frame))
+        part = self._further.see(part, frame).with_columns(*_reasons(frame, against), *self._raw(frame))
         for name in POSITION:
             if name in part.columns:
                 self._largest[name] = max(self._largest[name], largest(part[name]))
@@ -369,29 +339,13 @@ class Values:
         if _AGE in out.columns:
             valid_ns = pl.col("time_ns") - (pl.col(_AGE) * 1e9).round().cast(pl.Int64)
             out = out.with_columns(valid_ns.alias(POSITION_TIME)).drop(_AGE)
-        out = self._with_speeds_alone(out.with_columns(self._track(out)))
+        out = self._speeds.whole(out.with_columns(self._track(out)), left_out=pl.col(_BAD).is_not_null())
         self.whole_seconds &= bool((out["time_ns"].drop_nulls() % 1_000_000_000 == 0).all())
         without = out.filter(pl.col(_BAD).is_not_null())
         for (reason_text,), group in without.group_by(_BAD, maintain_order=True):
             kind: Kind = "quiet" if str(reason_text).endswith(": empty") or reason_text == NO_PLACE else "row"
             self.tally.add(REQUIRED, str(reason_text), group.height, group[LINE][0], str(group[_EXAMPLE][0]), kind=kind)
         return out.filter(pl.col(_BAD).is_null()).drop(_BAD, _EXAMPLE), left_out(without)
-
-    def _with_speeds_alone(self, out: pl.DataFrame) -> pl.DataFrame:
-        """A row that states a speed and no position is left out, and its speed is that of the next row without one, for ten seconds."""
-        if "ground_speed_mps" not in out.columns:
-            return out
-        line = pl.col(LINE).cast(pl.Int64)
-        spoken = out.filter(pl.col(_BAD).is_not_null() & pl.col("ground_speed_mps").is_finite() & pl.col("time_ns").is_not_null())
-        alone = spoken.select("track", line, pl.col("time_ns").alias("spoken_ns"), pl.col("ground_speed_mps").alias("spoken_mps"))
-        known = pl.concat([self._alone, alone]).sort(LINE, maintain_order=True)
-        if known.is_empty():
-            return out
-        self._alone = known.unique("track", keep="last", maintain_order=True)
-        joined = out.with_columns(line).join_asof(known, on=LINE, by="track", check_sortedness=False).with_columns(out[LINE])
-        fresh = (pl.col("time_ns") - pl.col("spoken_ns")).is_between(0, int(Limits.latency_s * 1e9))
-        speed = pl.coalesce("ground_speed_mps", pl.when(fresh).then("spoken_mps")).alias("ground_speed_mps")
-        return joined.with_columns(speed).drop("spoken_ns", "spoken_mps")
 
     def _without_nowhere(self, part: pl.DataFrame) -> pl.DataFrame:
         """A place that a receiver writes that has none speaks against its row; a receiver without a position is no damage of the file."""
