@@ -172,10 +172,10 @@ class Speeds:
         if known.is_empty():
             return rows[name]
         self._last[name] = known.unique("track", keep="last", maintain_order=True).sort(LINE)
-        asked = rows.select("track", line, "time_ns", name, to=to)
-        asked = asked.join_asof(known, on=LINE, by="track", check_sortedness=False)
+        open_rows = rows.select("track", line, "time_ns", name, to=to)
+        open_rows = open_rows.join_asof(known, on=LINE, by="track", check_sortedness=False)
         fresh = (pl.col("time_ns") - pl.col("spoken_ns")).is_between(0, int(Limits.latency_s * 1e9))
-        return asked.select(pl.coalesce(name, pl.when(pl.col("to") & fresh).then("spoken")).alias(name)).to_series()
+        return open_rows.select(pl.coalesce(name, pl.when(pl.col("to") & fresh).then("spoken")).alias(name)).to_series()
 
 
 def _of_velocities(rows: pl.DataFrame, absent: Container[str]) -> pl.DataFrame:
