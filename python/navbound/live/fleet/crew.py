@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import time
 from typing import TYPE_CHECKING, Any
 
-from navbound.errors import NavboundError
+from navbound.errors import FormatError, NavboundError
 from navbound.live.fleet.transport import connect
 from navbound.live.fleet.worker import Worker
 from navbound.scale.spawned import CONTEXT, deaf_to_interrupts
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 _AGAIN_FIRST_S, _AGAIN_MOST_S = 0.5, 30.0
 _END_S = 5.0
 _STEADY_S = 60.0
+_FINISH_TRIES = 5
+"""How often in a row a worker is started again to judge what is left."""
 
 
 class _Member:
@@ -26,7 +29,8 @@ class _Member:
     def __init__(self, name: str, number: int) -> None:
         self._name, self.number = name, number
         self.again_s, self.next_s = _AGAIN_FIRST_S, 0.0
-        self.n_ends = 0
+        self.n_ends, self.last = 0, ""
+        self.is_finishing = False
         self.begin()
 
     def begin(self) -> None:
@@ -36,6 +40,20 @@ class _Member:
         deaf_to_interrupts(self.process.start)
         theirs.close()
         self.since_s = time.monotonic()
+        if self.is_finishing:
+            self.finish()
+
+    def finish(self) -> None:
+        """Let it, and whoever follows it, end once all is judged."""
+        self.is_finishing = True
+        with contextlib.suppress(OSError):
+            # A process that is gone is followed by another, which hears the same.
+            self.pipe.send("finish")
+
+    @property
+    def is_done(self) -> bool:
+        """Whether it ended because all is judged."""
+        return self.is_finishing and self.process.exitcode == 0
 
     def spoken(self) -> list[tuple[str, Any]]:
         """What it said since the last look."""
@@ -64,7 +82,7 @@ class Crew:
     """
 
     def __init__(self, name: str, n: int, *, report: Callable[[dict[str, Any]], None], say: Callable[[str], None]) -> None:
-        self._report, self._say = report, say
+        self._name, self._report, self._say = name, report, say
         self.members = [_Member(name, k) for k in range(1, n + 1)]
 
     def look(self) -> None:
@@ -72,6 +90,8 @@ class Crew:
         for member in self.members:
             self._hear(member)
             now = time.monotonic()
+            if member.is_done:
+                continue
             if member.process.is_alive():
                 if now - member.since_s > _STEADY_S:
                     member.again_s = _AGAIN_FIRST_S
@@ -91,20 +111,33 @@ class Crew:
             if kind == "transition":
                 self._report(what)
             else:
+                member.last = what
                 self._say(f"worker {member.number}: {what}")
 
     def finish(self, stop: Callable[[], bool]) -> None:
-        """Let them judge what is left, and end."""
+        """Let them judge what is left, and end; who ends before is followed by another.
+
+        Raises
+        ------
+        FormatError
+            A worker ended again and again, and something is left.
+        """
         for member in self.members:
-            if member.process.is_alive():
-                member.pipe.send("finish")
+            member.finish()
+            member.n_ends = 0
         until = None
-        while any(member.process.is_alive() for member in self.members):
-            for member in self.members:
-                self._hear(member)
+        while not all(member.is_done for member in self.members):
+            self.look()
+            if failed := next((member for member in self.members if member.n_ends > _FINISH_TRIES), None):
+                raise FormatError(
+                    self._name,
+                    f"not judged to its end: worker {failed.number} ended {failed.n_ends} times"
+                    f"{f' ({failed.last})' if failed.last else ''}; when the cause is gone, navbound live work {self._name} goes on",
+                )
             if stop():
                 until = until or time.monotonic() + _END_S
                 if time.monotonic() > until:
+                    self._say(f"stopped before all was judged; navbound live work {self._name} goes on")
                     break
             time.sleep(0.02)
         for member in self.members:

@@ -35,17 +35,16 @@ class FileLog:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._journal: journal.Journal | None = None
+        self._end = 0
 
     def end(self) -> int:
         """Position behind the last whole frame: as :class:`navbound.live.fleet.transport.Log` says."""
         if self._journal is not None:
             return self._journal.length
         # Who only reads cuts nothing off: another process may be writing there.
-        content = self._path.read_bytes() if self._path.exists() else b""
-        ends, behind = _core.live_frames(content)
-        if behind == "damaged":
-            raise FormatError(self._path, f"a frame is damaged at byte {ends[-1] if ends else 0}")
-        return ends[-1] if ends else 0
+        while frames := self.read(self._end):
+            self._end += len(frames)
+        return self._end
 
     def _writer(self) -> journal.Journal:
         # What a killed writer left torn is cut off by the next one, not by who reads.

@@ -171,9 +171,10 @@ class LaneRun:
         self._show()
         return len(frames)
 
-    def end(self) -> int:
-        """Position behind what came in. [B]."""
-        return self._transport.came_in(self.lane).end()
+    @property
+    def is_unsent(self) -> bool:
+        """Whether outputs wait that nobody took yet."""
+        return bool(self._unsent)
 
     def snapshot(self) -> None:
         """Keep the state behind all that was judged."""
@@ -213,8 +214,9 @@ class LaneRun:
 
     def release(self) -> None:
         """Keep the state, unless what it gave could not be written, and give the lane back."""
+        # What is shown is out: no lane whose outputs could not be written counts as judged.
         if self._write(b""):
             with contextlib.suppress(UnreachableError):
                 self.snapshot()
-        self.show()
+            self.show()
         self._transport.release(self.lane)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import json
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -58,6 +60,8 @@ class Worker:
         self._heard_s = time.monotonic()
         self._lost: int | None = None
         self._renewed_s = -RENEW_S
+        self._came_in = [transport.came_in(lane) for lane in range(transport.n_lanes)]
+        self._elsewhere = dict.fromkeys(range(transport.n_lanes), 0)
 
     def _took(self, rows: list[_core._TransitionRow]) -> None:
         for row in rows:
@@ -72,7 +76,8 @@ class Worker:
         stop : callable
             Called each round.
         finishing : callable
-            Whether the feeder has ended: then this ends as well, once its lanes have no more to read.
+            Whether the feeder has ended: then this ends as well, once every lane of the fleet is judged to its end and written out, by this
+            worker or by one that lives. A lane whose worker is gone is taken over first.
 
         Raises
         ------
@@ -80,7 +85,7 @@ class Worker:
             Another worker took a lane over while this one did not answer: what it holds is not of now.
         """
         while not stop():
-            self._share()
+            self._share(everything=finishing())
             n_bytes = self._round()
             if n_bytes:
                 self._heard_s = time.monotonic()
@@ -92,8 +97,20 @@ class Worker:
         self.close()
 
     def _waiting(self) -> bool:
-        """Whether a lane that nobody has may still hold something: somebody must take it."""
-        return not self.lanes or any(run.position < run.end() for run in self.lanes.values())
+        """Whether any lane of the fleet may hold something that is not judged and out: what others have shown of theirs counts."""
+        try:
+            return any(self._judged_to(lane) < log.end() for lane, log in enumerate(self._came_in))
+        except UnreachableError:
+            return True
+
+    def _judged_to(self, lane: int) -> int:
+        """Position to which a lane is judged and out, as far as this worker knows. [B]."""
+        if (run := self.lanes.get(lane)) is not None:
+            return -1 if run.is_unsent else run.position
+        for status, _ in self._transport.shown(lane):
+            with contextlib.suppress(ValueError, KeyError, TypeError):
+                self._elsewhere[lane] = max(self._elsewhere[lane], int(json.loads(status)["position"]))
+        return self._elsewhere[lane]
 
     def _round(self) -> int:
         n = 0
@@ -101,14 +118,14 @@ class Worker:
             n += run.step()
         return n
 
-    def _share(self) -> None:
-        """Say that it lives; claim free lanes up to its share, give back what is above it."""
+    def _share(self, *, everything: bool) -> None:
+        """Say that it lives; claim free lanes up to its share, or all that nobody has; give back what is above it."""
         if time.monotonic() - self._renewed_s < RENEW_S:
             return
         self._renewed_s = time.monotonic()
         if taken := self._transport.renew():
             raise FencedError(f"lane {taken[0]} was taken over by another worker while this one did not answer")
-        share = -(-self._transport.n_lanes // max(1, self._transport.n_workers()))
+        share = self._transport.n_lanes if everything else -(-self._transport.n_lanes // max(1, self._transport.n_workers()))
         for lane in range(self._transport.n_lanes):
             if len(self.lanes) >= share:
                 break
