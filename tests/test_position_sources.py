@@ -109,6 +109,8 @@ def test_a_list_of_the_details_counts_until_another_source_is_stated(tmp_path: P
     assert epochs["reason_id"].to_list() == ["reported"] * 4 + [None, None, "reported", None]
     # Where the source of the row is another than its list says, the list counts for the rows of that source.
     contradicting = {"nac_p": 10, "type": "adsb_icao", "mlat": ["lat"]}
+    one = navbound.analyze(trace(tmp_path, ["adsb_icao"] * N, [{"nac_p": 10, "type": "mlat"}, *[None] * (N - 1)])).epochs
+    assert one["reason_id"].to_list() == ["reported", *[None] * (N - 1)]
     assert reported(trace(tmp_path, ["adsb_icao"] * N, [contradicting, *[None] * (N - 1)]))
 
 
@@ -171,6 +173,12 @@ def test_a_column_of_how_positions_came_decides(tmp_path: Path, value: object, f
 @pytest.mark.parametrize(("value", "foreign"), [("Wide-area multilateration", True), ("GPS", False)])
 def test_such_a_column_has_many_names(tmp_path: Path, name: str, value: str, foreign: bool) -> None:
     assert stating(tmp_path, name, value) == (foreign, [])
+
+
+@pytest.mark.parametrize("name", ["source", "position_source"])
+@pytest.mark.parametrize("value", ["ADS-B/MLAT", "multilat", "Multilaterated position", "MLAT (ground)", "fused ADS-B + WAM", "SSR Mode S"])
+def test_a_name_of_several_words_is_foreign_by_one_of_them(tmp_path: Path, name: str, value: str) -> None:
+    assert stating(tmp_path, name, value) == (True, [])
 
 
 def test_a_word_of_such_a_column_that_is_not_known_is_named(tmp_path: Path) -> None:

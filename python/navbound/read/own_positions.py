@@ -35,6 +35,9 @@ COMPUTED = _words(
 FOREIGN = COMPUTED | _words("adsc ads_c mode_s modes mode_ac mode_a_c")
 """Words of sources whose positions are none that the aircraft claims a category of."""
 
+NAMED_COMPUTED = rf"(?:^|[^a-z0-9])(?:multilat[a-z]*|{'|'.join(sorted(COMPUTED))})(?:[^a-z0-9]|$)"
+"""In lower case with `_` for blanks and hyphens: a name of several words, one of which is such a word, as `ads_b/mlat`."""
+
 OWN = _words(
     "adsb ads_b adsb_icao adsb_icao_nt adsb_other adsb_1090 ads_b_1090 ads_b_1090es 1090es adsb_uat ads_b_uat uat flarm ais "
     "gps gnss glonass galileo beidou sbas waas egnos gbas dgps dgnss rtk rtk_fixed rtk_float ppp gps_ins gnss_ins"
@@ -111,5 +114,7 @@ class OfTrace:
             self._computed = ""
         if self._computed:
             return self._computed
-        kind = self._kind if stated is None else stated
+        # Of a row and its own details that contradict each other the one counts that is not the aircraft's.
+        contradicted = details is not None and isinstance(self._kind, str) and self._kind in FOREIGN
+        kind = self._kind if stated is None or contradicted else stated
         return kind if isinstance(kind, str) and kind.strip() else "unknown"

@@ -45,6 +45,8 @@ class Kind:
         A number above the one or below the other is against the position, any other says nothing.
     fine_begins : str
         Words that begin so are fine, unless they are against the position.
+    against_named : str
+        Pattern of names of several words that are against the position.
     empty_against : bool
         A field without a word is against the position; otherwise it states nothing.
     """
@@ -58,6 +60,7 @@ class Kind:
     above: float = math.inf
     below: float = -math.inf
     fine_begins: str = ""
+    against_named: str = ""
     empty_against: bool = False
 
 
@@ -208,7 +211,14 @@ KINDS: tuple[Kind, ...] = (
     Kind("invalid", _words("no_position no_pos without_position"), _YES | {"n"}, _words("p 0 false no"), other_against=True),
     AGE,
     # How a position came: what others computed or repeat is none that the aircraft claims anything of.
-    Kind("invalid", own_positions.OF_ANYTHING, own_positions.FOREIGN, own_positions.OWN, fine_begins=own_positions.OWN_BEGINS),
+    Kind(
+        "invalid",
+        own_positions.OF_ANYTHING,
+        own_positions.FOREIGN,
+        own_positions.OWN,
+        fine_begins=own_positions.OWN_BEGINS,
+        against_named=own_positions.NAMED_COMPUTED,
+    ),
     Kind(
         "invalid",
         own_positions.OF_POSITION,
@@ -426,6 +436,8 @@ def stated(kind: Kind, raw: pl.Series) -> Stated:
     declared = text.is_not_null() & ~text.is_in(_MISSING)
     fine = text.is_in(_listed(kind.fine))
     against = text.is_in(_listed(kind.against))
+    if kind.against_named:
+        against |= text.str.contains(kind.against_named) & ~fine
     if kind.fine_begins:
         fine |= text.str.starts_with(kind.fine_begins) & ~against
     unknown = declared & ~fine & ~against
