@@ -130,6 +130,8 @@ def test_the_command_prints_a_table_and_json_and_refuses_in_a_sentence(shared_da
     assert {name[0] for name in data["satellites"]} == {"G"}
     more = json.loads(navbound(*common, "--date", "2020-06-25T06:00", "--systems", "GE", "--json").stdout)
     assert {name[0] for name in more["satellites"]} == {"G", "E"}
+    absent = navbound("predict", "raim", "gps", "--at", "0,0", "--hours", "1", "--systems", "GC")
+    assert "BeiDou is among the constellations of the receiver, and no satellite of it is in the orbits." in " ".join(absent.stdout.split())
     assert np.isclose(data["limits"][0]["hal_m"], 0.3 * 1852.0)
     refusals: list[tuple[tuple[str | Path, ...], int, str]] = [
         (("predict", "waas", "gps", "--at", "0,0"), USAGE, "raim"),

@@ -197,7 +197,9 @@ def _sky(request: Request) -> Satellites:
         raise InputError(
             "systems", "".join(sorted(letters)), domain=" ".join([f"one of the orbits that may be used: {there}.", *sky.orbits.notes])
         )
-    return replace(sky, orbits=orbits)
+    absent = [words for letter, words in gnss.SYSTEMS.items() if letter in letters and letter not in {name[0] for name in orbits.satellite}]
+    notes = [f"{words} is among the constellations of the receiver, and no satellite of it is in the orbits." for words in absent]
+    return replace(sky, orbits=replace(orbits, notes=(*orbits.notes, *notes)))
 
 
 def limit(name: str) -> PredictedLimit:
