@@ -151,3 +151,9 @@ def test_the_levels_hold_and_the_alert_and_the_gap_are_seen() -> None:
     for error, level in (("hpe_m", "hpl_m"), ("vpe_m", "vpl_m")):
         shares = epochs[error].to_numpy()[has_level] / epochs[level].to_numpy()[has_level]
         assert np.abs(shares).max() < 1.0
+
+
+def test_messages_that_an_analysis_does_not_use_are_named() -> None:
+    run = navbound.analyze([DATA / "station.rnx", DATA / "broadcast.rnx", DATA / "service.ems"])
+    words = "service.ems: messages of an augmentation service are not used here; navbound evaluate corrects positions with them."
+    assert run.summary.assumptions.count(words) == 1

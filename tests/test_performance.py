@@ -156,6 +156,18 @@ def test_observations_navigation_and_messages_from_the_command_line(shared_data:
     epochs = pl.read_parquet(tmp_path / "run" / directory.EPOCHS)
     assert epochs.filter(pl.col("hpl_m").is_null())["est_lat_rad"].is_null().all()
     assert epochs.filter(pl.col("hpl_m").is_not_null())["nse_e_m"].is_not_null().all()
+    # The satellites of each solution, where the solution without the service sees them.
+    satellites = pl.read_parquet(tmp_path / "run" / directory.SATELLITES)
+    assert satellites.group_by("time_ns").len().sort("time_ns")["len"].to_list() == epochs.filter(pl.col("n_sv") > 0)["n_sv"].to_list()
+    observations, navigation = gnss.read_observations(sbas / names[0]), gnss.read_navigation(sbas / names[1])
+    own = gnss.solve(observations, navigation, systems="G", keep_ranges=True).heard
+    assert own is not None
+    both = satellites.join(own, on=["time_ns", "sv"]).drop_nulls(["az_rad", "az_rad_right"])
+    assert both.height == satellites.height
+    # Two positions some metres apart, and satellites 20 000 km away.
+    apart = both.select(az=(pl.col("az_rad") - pl.col("az_rad_right")).cos(), el=(pl.col("el_rad") - pl.col("el_rad_right")).abs())
+    assert apart["az"].to_numpy().min() > 1.0 - 1e-10
+    assert apart["el"].to_numpy().max() < 1e-5
 
 
 @pytest.mark.parametrize(

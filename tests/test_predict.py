@@ -146,6 +146,8 @@ def test_the_command_prints_a_table_and_json_and_refuses_in_a_sentence(shared_da
         (("predict", "raim", "gps", "--at", "0,0", "--systems", "X"), USAGE, "systems"),
         (("predict", "raim", "gps", "--at", "0,0", "--systems", "E"), USAGE, "systems"),
         (("predict", "raim", "gps", "--at", "0,0", "--at", "0,0"), USAGE, "once"),
+        (("predict", "raim", "gps", "--at", "XXXX/08R"), USAGE, "--at = XXXX/08R: no airport of that name"),
+        (("predict", "raim", "gps", "--at", "LFPG/99"), USAGE, "--at = LFPG/99: no runway of LFPG of that name; there are 08H"),
         (("predict", "raim", "no-such.al3", "--at", "0,0"), USAGE, "almanac"),
         (("predict", "raim", __file__, "--at", "0,0"), UNREADABLE, "almanac"),
         ((*common, "--date", "2020-08-25"), USAGE, "day"),

@@ -14,6 +14,8 @@ import navbound
 import report_fixture
 from navbound.report import render
 from navbound.run import directory
+from navbound.run.evaluate.performance import Options, evaluate_files
+from navbound.time import utc_text
 from test_report_browser import CHROMIUM, FLAGS, _open, _probe, _write
 
 if TYPE_CHECKING:
@@ -93,6 +95,34 @@ def test_the_sky_shows_who_was_used_and_who_was_excluded(browser: Browser, stati
     g10 = next(s for s in station.summary.satellites if s.sv == "G10")
     assert shown["G10"].locator('[data-key="n_used"]').get_attribute("data-value") == str(g10.n_used)
     for chart in ("#residuals", "#strength", "#scatter"):
+        assert page.locator(f"{chart} canvas").is_visible()
+    page.context.close()
+
+
+@pytest.mark.parametrize("messages", [[], ["service.ems"]], ids=["own", "service"])
+def test_an_evaluation_shows_the_sky_of_its_solutions(browser: Browser, tmp_path: Path, messages: list[str]) -> None:
+    files = [DATA / name for name in ("station.rnx", "broadcast.rnx", *messages)]
+    run = evaluate_files(files, Options(["APV-I"], truth="4189135.1896,188029.6189,4789919.6247"), out=tmp_path / "run")
+    assert run.satellites is not None
+    again = directory.load(tmp_path / "run").satellites
+    assert again is not None
+    assert run.satellites.equals(again)
+    page = _open(browser, run.report)
+    page.locator("#bucket").evaluate("(slider) => { slider.value = 7; slider.dispatchEvent(new Event('input')); }")
+    # The series and the sky stand at one time.
+    now = page.locator('[data-key="bucket_utc_s"]').inner_text()
+    shown = page.locator("#sky .two > div > p.note").first.inner_text()
+    assert shown.startswith(now.split(" ", 1)[1])
+    start_ns = run.satellites["time_ns"].unique().sort()
+    at = next(t for t in start_ns if utc_text(t)[11:19] == shown[:8])
+    here = run.satellites.filter(time_ns=at)
+    assert page.locator('#sky [data-key="n_used"]').get_attribute("data-value") == str(here.filter(fate="used").height)
+    assert ("heard" in shown) != bool(messages)
+    assert messages or f"of {here.height} satellites heard" in shown
+    assert {r.locator("td").first.inner_text() for r in page.locator("#satellites tbody tr").all()} == {
+        s.sv for s in run.summary.satellites
+    }
+    for chart in ("#satellites-used", "#residuals"):
         assert page.locator(f"{chart} canvas").is_visible()
     page.context.close()
 

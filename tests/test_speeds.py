@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import navbound
-from navbound.read.speeds import Speeds, doubts_of_speeds
+from navbound.read.speeds import Speeds, speeds_of
 
 N = 400
 M_PER_DEG = math.radians(1.0) * 6_371_000.0
@@ -69,7 +69,41 @@ def test_pieces_of_any_length_give_the_same_words(tmp_path: Path, rows: int) -> 
     speeds = Speeds()
     for begin in range(0, epochs.height, rows):
         speeds.see(epochs[begin : begin + rows])
-    assert speeds.doubts() == doubts_of_speeds(epochs) != []
+    assert speeds.scatter() == speeds_of(epochs).scatter() is not None
+    assert speeds.doubts() == speeds_of(epochs).doubts() != []
+
+
+def late(path: Path, age_s: float, sigma_m: float) -> Path:
+    """A flight northwards at 100 m/s, a row each ten seconds, whose positions are older than their rows by any time up to an age."""
+    ages = np.random.default_rng(5).uniform(0.0, age_s, 200)
+    rows = ["time,lat_deg,lon_deg,sigma_e_m,sigma_n_m,speed_mps"]
+    for k in range(200):
+        lat = 49.0 + 100.0 * (10 * k - ages[k]) / M_PER_DEG
+        rows.append(f"2026-11-22T12:{k // 6:02d}:{10 * (k % 6):02d}Z,{lat:.8f},2.5,{sigma_m},{sigma_m},100")
+    path.write_text("\n".join(rows) + "\n")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("age_s", "sigma_m", "spec", "shown"),
+    [
+        # Up to 500 m late: 95 % of the steps leave 390 m (a triangle of 500 m), of which turns and rounding hide 30 m and noise 28 m.
+        (5.0, 10.0, "RNP 0.1", False),
+        (5.0, 10.0, "RNP 0.3", True),
+        (0.5, 10.0, "RNP 0.1", True),
+        # The covariance holds it.
+        (2.0, 60.0, "RNP 0.1", True),
+    ],
+)
+def test_positions_that_scatter_along_their_way_by_more_than_the_margin_show_nothing(
+    tmp_path: Path, age_s: float, sigma_m: float, spec: str, shown: bool
+) -> None:
+    verdict = navbound.analyze(late(tmp_path / "a.csv", age_s, sigma_m), spec=spec).summary.verdict
+    assert verdict.id == ("inside" if shown else "not_shown")
+    if not shown:
+        # 332 m, over the root of two, by bins of 6 %.
+        along_m = float(verdict.position_doubts[0].split(" by ")[1].split(" m ")[0])
+        assert 0.9 * 332.0 / math.sqrt(2.0) < along_m < 1.1 * 332.0 / math.sqrt(2.0)
 
 
 def stand(path: Path, seconds: int, column: str, stated: float) -> Path:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -222,6 +223,18 @@ def test_an_empty_speed_now_and_then_turns_no_rule_off(tmp_path: Path, every: in
     assert "position_stale" in reasons(run)
 
 
+def test_positions_that_catch_up_after_a_hold_are_stale_until_they_have(tmp_path: Path) -> None:
+    """Held for ten seconds, then interpolated to where the aircraft is four seconds later: 7.5 s late, 5 s, 2.5 s."""
+
+    def lat_deg(k: int) -> float:
+        seconds = k if k < 60 or k >= 73 else 59.0 if k < 70 else 59.0 + 3.5 * (k - 69)
+        return 48.0 + SPEED_MPS * seconds * DEG_PER_M
+
+    reasons_of = analyzed(tmp_path, rows(240, lat_deg=lat_deg)).epochs["reason_id"].to_list()
+    assert reasons_of[62:72] == ["position_stale"] * 10
+    assert set(reasons_of[:60]) | set(reasons_of[72:]) == {None}
+
+
 def test_an_empty_speed_before_a_stop_that_nobody_flew_explains_nothing(tmp_path: Path) -> None:
     speeds = stands_from_30(ground_speed_mps=lambda k: SPEED_MPS if k < 23 else None if k < 30 else 0.0)
     assert "position_stale" in reasons(analyzed(tmp_path, speeds))
@@ -261,6 +274,55 @@ def test_a_direction_that_contradicts_shows_with_empty_fields_and_long_steps_too
 def test_ten_minutes_of_an_hour_in_which_a_track_is_led_aside_are_doubted(tmp_path: Path) -> None:
     aside = rows(3600, track_deg=0.0, lon_deg=lambda k: 2.0 + 30.0 * min(max(k - 900, 0), 600) * DEG_PER_M / 0.66)
     assert any("positions end elsewhere" in each for each in analyzed(tmp_path, aside).summary.verdict.position_doubts)
+
+
+def bursts(n_s: int, every_s: int, burst_s: int, aside_mps: float, **added: Any) -> list[dict[str, Any]]:
+    """Flies north and is led to the east now and then."""
+
+    def lon_deg(k: int) -> float:
+        return 2.0 + aside_mps * ((k // every_s) * burst_s + min(k % every_s, burst_s)) * DEG_PER_M / 0.66
+
+    values: dict[str, Any] = {"track_deg": 0.0, "lon_deg": lon_deg} | added
+    return rows(n_s, **values)[::4]
+
+
+@pytest.mark.parametrize(
+    ("flight", "doubted"),
+    [
+        # A tenth of the minutes, each by half its way.
+        ((3600, 900, 120, 120.0), True),
+        # A sixth of them, by a fifth: 20 windows by 2 km more than their margins, of 120.
+        ((7200, 360, 60, 50.0), True),
+        ((3600, 1800, 60, 120.0), False),
+    ],
+)
+def test_leads_now_and_then_add_up(tmp_path: Path, flight: tuple[int, int, int, float], doubted: bool) -> None:
+    verdict = analyzed(tmp_path, bursts(*flight)).summary.verdict
+    assert any("positions end elsewhere" in each for each in verdict.position_doubts) == doubted
+
+
+@pytest.mark.parametrize("speed", [None, lambda k: SPEED_MPS if k % 90 == 0 else None])
+def test_a_direction_without_a_speed_is_compared_with_the_way_of_the_positions(tmp_path: Path, speed: Any) -> None:
+    led, flown = (bursts(1800, 3600, 3600, mps, ground_speed_mps=speed) for mps in (120.0, 0.0))
+    for k, row in enumerate(led[:250]):
+        row["lon_deg"] = flown[k]["lon_deg"]
+    verdict = analyzed(tmp_path, led).summary.verdict
+    assert any("positions end elsewhere" in each for each in verdict.position_doubts)
+    assert analyzed(tmp_path, flown).summary.verdict.position_doubts == []
+
+
+def test_a_speed_and_a_track_that_repeat_for_a_while_in_a_turn_show_nothing(tmp_path: Path) -> None:
+    """As state vectors repeat what was last heard: here for 90 s, while the aircraft turns by 40 degrees."""
+    north, east = (SPEED_MPS * DEG_PER_M * part(math.radians(40.0)) for part in (math.cos, math.sin))
+
+    def lat_deg(k: int) -> float:
+        return 48.0 + SPEED_MPS * DEG_PER_M * min(k, 600) + north * max(0, k - 600)
+
+    def lon_deg(k: int) -> float:
+        return 2.0 + east / math.cos(math.radians(49.35)) * max(0, k - 600)
+
+    turned = rows(1800, track_deg=lambda k: 0.0 if k < 690 else 40.0, lat_deg=lat_deg, lon_deg=lon_deg)[::4]
+    assert not any("positions end elsewhere" in each for each in analyzed(tmp_path, turned).summary.verdict.position_doubts)
 
 
 @pytest.mark.parametrize("twin", ["ABC123", "0xabc123", "0xABC123"])

@@ -7,7 +7,7 @@ import { lateral, vertical } from "./chart/deviation.ts";
 import { honesty } from "./chart/honesty.ts";
 import { approaches } from "./approaches/page.ts";
 import { filter } from "./filter/page.ts";
-import { gnss } from "./gnss/page.ts";
+import { gnss, gnssOfLevels } from "./gnss/page.ts";
 import { alertLimit } from "./chart/alertlimit.ts";
 import { exceedance } from "./chart/risk.ts";
 import { performance } from "./chart/scales.ts";
@@ -88,7 +88,10 @@ class Page {
         root.append(tables, ...(alone ? [] : [methods(payload)]), smallPrint(payload), this.bar);
         this.listTracks();
         const first = payload.tracks[0];
-        if (first === undefined && this.series !== null) this.charts.replaceChildren();
+        if (first === undefined && this.series !== null) {
+            this.charts.replaceChildren();
+            await gnssOfLevels(this.charts, payload, this.theme, this.series);
+        }
         else if (first === undefined) this.charts.append(el("p", { class: "note" }, "No epochs to draw."));
         else await this.select(summary.verdict.worst_accuracy?.track ?? first.track);
         root.dataset.ready = "true";

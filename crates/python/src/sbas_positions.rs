@@ -92,7 +92,8 @@ fn satellites<'py>(py: Python<'py>, corrected: &Corrected) -> PyResult<Bound<'py
     let d = PyDict::new(py);
     d.set_item("epoch", rows.iter().map(|(i, _)| *i).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("prn", rows.iter().map(|(_, s)| i64::from(s.prn)).collect::<Vec<_>>().into_pyarray(py))?;
-    let columns: [(&str, SatelliteNumber); 3] = [("el_rad", |s| s.el_rad), ("residual_m", |s| s.residual_m), ("sigma_m", |s| s.sigma_m)];
+    let columns: [(&str, SatelliteNumber); 4] =
+        [("az_rad", |s| s.az_rad), ("el_rad", |s| s.el_rad), ("residual_m", |s| s.residual_m), ("sigma_m", |s| s.sigma_m)];
     for (name, value) in columns {
         d.set_item(name, rows.iter().map(|(_, s)| value(s)).collect::<Vec<_>>().into_pyarray(py))?;
     }

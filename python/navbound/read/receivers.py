@@ -91,7 +91,7 @@ def read(source: Source, name: str) -> Log:
         n_damaged = sum(count for reason_id, _, count, *_ in log["left_out"] if reason_id in _DAMAGED)
         raise FormatError(source.path, _undated(log["n_rows"], n_damaged), log["undated"], "date")
     if log["n_rows"] == 0:
-        what = f"a log of kind {name} without a message that holds a position ({MESSAGES[name]})"
+        what = f"a log of kind {name} without a message that positions are read from ({MESSAGES[name]})"
         raise FormatError(source.path, what + _solvable(source))
     return Log(_epochs(log), log["n_rows"], left_out, log["absent_ns"], log["fields"], _notes(source, log))
 

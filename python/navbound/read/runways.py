@@ -89,8 +89,8 @@ def table() -> pl.DataFrame:
     return pl.concat([end("low", "high"), end("high", "low")])
 
 
-def runway(name: str) -> Runway:
-    """Look a runway up by airport and designator, ``LFPG/08R``.
+def runway(name: str, argument: str = "path") -> Runway:
+    """Look a runway up by airport and designator, ``LFPG/08R``, that an argument names.
 
     Raises
     ------
@@ -99,14 +99,14 @@ def runway(name: str) -> Runway:
     """
     airport, separator, designator = name.upper().partition("/")
     if not separator or not airport or not designator:
-        raise InputError("path", name, domain="airport/runway such as LFPG/08R, auto, or a route in a .toml or .csv file")
+        raise InputError(argument, name, domain="airport/runway such as LFPG/08R, auto, or a route in a .toml or .csv file")
     ends = table().filter(pl.col("airport") == airport)
     if ends.is_empty():
         near = difflib.get_close_matches(airport, table()["airport"].unique().to_list(), 3, 0.6)
-        raise NotFoundError("path", name, "airport", more=f"nearest: {', '.join(near) or 'none'}")
+        raise NotFoundError(argument, name, "airport", more=f"nearest: {', '.join(near) or 'none'}")
     matching = ends.filter(pl.col("end") == designator)
     if matching.is_empty():
-        raise NotFoundError("path", name, f"runway of {airport}", sorted(ends["end"].to_list()))
+        raise NotFoundError(argument, name, f"runway of {airport}", sorted(ends["end"].to_list()))
     return _runway(matching.row(0, named=True))
 
 

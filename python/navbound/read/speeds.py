@@ -12,6 +12,7 @@ import polars as pl
 from navbound.read.checks.places import east_north_m
 from navbound.read.checks.plausible import plausible_rows
 from navbound.read.tables.columns import NO_COLUMN, declare
+from navbound.records.scatter import Scatter
 from navbound.table.columns import HORIZONTAL
 
 if TYPE_CHECKING:
@@ -40,25 +41,49 @@ _LEAST, _LEAST_SHARE = 3, 0.2
 """Windows of a track, and share of them, that must contradict; of fewer windows all of a recording. Provenance: ours."""
 _RUN = 5
 """Windows on end that must contradict where the share is smaller. Provenance: ours."""
+_GROSS = 0.25
+"""Share of the way by which a displacement is grossly elsewhere, where it is beyond the margins by `_GROSS_M`, too: `_LEAST` of a track
+contradict, however long it is. A speed and a track that a source repeats for a minute and a half while the aircraft turns make two (Paris).
+Provenance: ours. [1]"""
+_GROSS_M = 2_000.0
+"""A patrol at 25 to 45 m/s with a row each ten seconds turns between them: 1 km in three of its 235 minutes. Provenance: ours. [m]"""
+_MOST_EXCESS_M, _EXCESS_M = 20_000.0, 100.0
+"""What the displacements of a track may go beyond their margins in all, and for each window more: the largest of honest tracks are 11 km in
+14 windows (repeated speeds, Paris) and 3.5 km in 66 (Switzerland). Provenance: ours. [m]"""
+
+
+_SCATTER_BINS_M = np.geomspace(1.0, 1e5, 201)
+"""Edges of the bins in which scatter is counted: 6 % wide. [m]"""
+_LEAST_STEPS = 60
+"""Steps of a track from which its scatter is stated. Provenance: ours. [1]"""
+_K95 = 1.96
+"""Standard deviations that 95 % of normal errors of one axis are within."""
+_STATED_MPS, _STATED_SHARE = 1.0, 0.02
+"""What a stated speed may be wrong by, and share of the way that a turn or a scale hides. Provenance: ours. [m/s, 1]"""
 
 
 @dataclass
 class _Minutes:
-    """Windows of one track that were compared, those that contradict, and as many of these on end as there are."""
+    """Windows of one track that were compared, those that contradict, as many of these on end as there are, gross ones, and by how much."""
 
     n: int = 0
     n_false: int = 0
     run: int = 0
     longest: int = 0
+    n_gross: int = 0
+    excess_m: float = 0.0
 
-    def count(self, *, false: bool) -> None:
+    def count(self, *, false: bool, gross: bool, excess_m: float) -> None:
         self.n += 1
         self.n_false += false
         self.run = self.run + 1 if false else 0
         self.longest = max(self.longest, self.run)
+        self.n_gross += gross
+        self.excess_m += max(0.0, excess_m)
 
     def contradict(self) -> bool:
-        return self.n_false >= _LEAST and (self.n_false >= _LEAST_SHARE * self.n or self.longest >= _RUN)
+        often = self.n_false >= _LEAST and (self.n_false >= _LEAST_SHARE * self.n or self.longest >= _RUN)
+        return often or self.n_gross >= _LEAST or self.excess_m > _MOST_EXCESS_M + _EXCESS_M * self.n
 
 
 @dataclass
@@ -70,8 +95,8 @@ class _Test:
     worst: tuple[float, float] = (0.0, 0.0)
     excess_m: float = 0.0
 
-    def count(self, track: str, *, false: bool, lengths_m: tuple[float, float]) -> None:
-        self.tracks.setdefault(track, _Minutes()).count(false=false)
+    def count(self, track: str, *, false: bool, lengths_m: tuple[float, float], gross: bool = False, beyond_m: float = 0.0) -> None:
+        self.tracks.setdefault(track, _Minutes()).count(false=false, gross=gross, excess_m=beyond_m)
         if false and (excess_m := abs(lengths_m[0] - self.expected * lengths_m[1])) > self.excess_m:
             self.worst, self.excess_m = lengths_m, excess_m
 
@@ -91,14 +116,17 @@ class Speeds:
     def __init__(self) -> None:
         self._longer, self._shorter, self._aside = _Test(), _Test(), _Test(expected=0.0)
         self._waiting: pl.DataFrame | None = None
+        self._steps = _Steps()
 
     def see(self, epochs: pl.DataFrame) -> None:
         """The next epochs."""
         speed = _stated(epochs)
-        if speed is None or epochs.is_empty():
+        if epochs.is_empty() or (speed is None and "ground_track_rad" not in epochs.columns):
             return
+        speed = pl.lit(float("nan")) if speed is None else speed
         own = {"_speed": speed, "_sigma": _sigma_m(epochs), "_whither": _whither(epochs), "_plausible": plausible_rows(epochs)}
         rows = epochs.select("track", "time_ns", "est_lat_rad", "est_lon_rad", **own)
+        self._steps.see(rows)
         rows = rows.with_columns(pl.when(pl.col(name).is_finite()).then("time_ns").alias(f"{name}_ns") for name in _CARRIED)
         rows = rows if self._waiting is None else pl.concat([self._waiting, rows])
         rows = rows.with_columns(_carried(name) for name in _CARRIED).with_columns(
@@ -117,12 +145,12 @@ class Speeds:
         speed, sigma = rows["_speed"].to_numpy(), rows["_sigma"].to_numpy()
         stated_m = 0.5 * (speed[:-1] + speed[1:]) * step_s
         whither = rows["_whither"].to_numpy()
-        velocity = speed[:, None] * np.column_stack([np.sin(whither), np.cos(whither)])
-        stated_en_m = 0.5 * (velocity[:-1] + velocity[1:]) * step_s[:, None]
+        towards = np.column_stack([np.sin(whither), np.cos(whither)])
+        stated_en_m, towards_s = (0.5 * (each[:-1] + each[1:]) * step_s[:, None] for each in (speed[:, None] * towards, towards))
         track = rows["track"].rle_id().to_numpy()
         plausible = rows["_plausible"].to_numpy()
         sound = plausible[1:] & plausible[:-1]
-        sound &= np.isfinite(stated_m) & np.isfinite(step_m) & (step_s > 0) & (step_s <= _LONGEST_STEP_S) & (track[1:] == track[:-1])
+        sound &= np.isfinite(step_m) & (step_s > 0) & (step_s <= _LONGEST_STEP_S) & (track[1:] == track[:-1])
         # A step belongs to the window in which it begins.
         of = rows.select(pl.struct("track", "_window").rle_id())["track"].to_numpy()[: rows.height - open_window]
         if of.size == 0:
@@ -137,12 +165,24 @@ class Speeds:
                 legs_m = _legs_m(time_s[first : at.stop + 1], place[first : at.stop + 1])
                 name, way_m, by_speed_m = rows["track"][first], min(float(step_m[at].sum()), legs_m), float(stated_m[at].sum())
                 offset_m, margin_m = _OFFSET_MPS * _WINDOW_S, _OFFSET_MPS * _WINDOW_S + _DEVIATIONS * noise_m
-                longer, shorter = apart_m > _LONGER * by_speed_m + margin_m, way_m < _SHORTER * by_speed_m - offset_m
-                self._longer.count(name, false=longer, lengths_m=(apart_m, by_speed_m))
-                self._shorter.count(name, false=shorter, lengths_m=(way_m, by_speed_m))
-                aside_m = float(np.hypot(*(apart_en_m - stated_en_m[at].sum(axis=0))))
+                if math.isfinite(by_speed_m):
+                    longer, shorter = apart_m > _LONGER * by_speed_m + margin_m, way_m < _SHORTER * by_speed_m - offset_m
+                    self._longer.count(name, false=longer, lengths_m=(apart_m, by_speed_m))
+                    self._shorter.count(name, false=shorter, lengths_m=(way_m, by_speed_m))
+                    whither_m = stated_en_m[at].sum(axis=0)
+                else:
+                    # Where nothing says how fast, the way is that of the positions, and its direction the stated one.
+                    by_speed_m = way_m
+                    whither_m = way_m * towards_s[at].sum(axis=0) / step_s[at].sum()
+                aside_m = float(np.hypot(*(apart_en_m - whither_m)))
                 if math.isfinite(aside_m):
-                    self._aside.count(name, false=aside_m > _ASIDE * by_speed_m + margin_m, lengths_m=(aside_m, by_speed_m))
+                    beyond_m = aside_m - _ASIDE * by_speed_m - margin_m
+                    gross = aside_m > _GROSS * by_speed_m + margin_m and beyond_m > _GROSS_M
+                    self._aside.count(name, false=beyond_m > 0.0, lengths_m=(aside_m, by_speed_m), gross=gross, beyond_m=beyond_m)
+
+    def scatter(self) -> Scatter | None:
+        """How far positions scatter along their way, on the track that does so most; None where no track has enough steps."""
+        return self._steps.largest()
 
     def doubts(self) -> list[str]:
         """A doubt, where there is one, after the last epochs."""
@@ -164,6 +204,51 @@ class Speeds:
                 f"({declare(f'ground_track_rad={NO_COLUMN}')}, to leave the track out)"
             )
         return doubts
+
+
+class _Steps:
+    """Lengths of steps less those of their speeds, track by track, counted in bins."""
+
+    def __init__(self) -> None:
+        self._counts: dict[str, NDArray[np.int64]] = {}
+        self._last: pl.DataFrame | None = None
+
+    def see(self, rows: pl.DataFrame) -> None:
+        """The next rows, in the order of track and time, with the speeds that they state themselves."""
+        rows = rows.select("track", "time_ns", "est_lat_rad", "est_lon_rad", "_speed", "_sigma", "_plausible")
+        rows = rows if self._last is None else pl.concat([self._last, rows])
+        self._last = rows.tail(1)
+        place, speed = rows.select("est_lat_rad", "est_lon_rad").to_numpy(), rows["_speed"].to_numpy()
+        step_s = np.diff((rows["time_ns"] - rows["time_ns"][0]).to_numpy() * 1e-9)
+        mean, change = 0.5 * (speed[:-1] + speed[1:]), np.abs(np.diff(speed))
+        # The way of a step is between those of its two speeds.
+        margin_m = (_STATED_MPS + _STATED_SHARE * mean + 0.5 * change) * step_s
+        # What the covariances of both ends hold, in one axis.
+        sigma = rows["_sigma"].to_numpy() / math.sqrt(2.0)
+        margin_m += _K95 * np.hypot(sigma[:-1], sigma[1:])
+        left_m = np.abs(np.hypot(*east_north_m(place[:-1], place[1:]).T) - mean * step_s) - margin_m
+        track, plausible = rows["track"].rle_id().to_numpy(), rows["_plausible"].to_numpy()
+        sound = plausible[1:] & plausible[:-1] & (track[1:] == track[:-1])
+        sound &= (step_s > 0) & (step_s <= _LONGEST_STEP_S) & np.isfinite(left_m)
+        names = rows["track"][1:].filter(pl.Series(sound))
+        bins = np.searchsorted(_SCATTER_BINS_M, left_m[sound])
+        begin = 0
+        for length, name in names.rle().struct.unnest().iter_rows():
+            own = np.bincount(bins[begin : begin + length], minlength=_SCATTER_BINS_M.size + 1)
+            self._counts[name] = own + self._counts.get(name, 0)
+            begin += length
+
+    def largest(self) -> Scatter | None:
+        found = None
+        for name, counts in self._counts.items():
+            if (n := int(counts.sum())) < _LEAST_STEPS:
+                continue
+            at = int(np.searchsorted(np.cumsum(counts), 0.95 * n))
+            # Both ends of a step scatter.
+            along_m = float(_SCATTER_BINS_M[at - 1] / math.sqrt(2.0)) if at else 0.0
+            if found is None or along_m > found.along_m:
+                found = Scatter(name, along_m, n)
+        return found
 
 
 _CARRIED = ("_speed", "_whither")
@@ -206,8 +291,8 @@ def _sigma_m(epochs: pl.DataFrame) -> pl.Expr:
     return (ee + nn).sqrt().fill_null(0.0).fill_nan(0.0)
 
 
-def doubts_of_speeds(epochs: pl.DataFrame) -> list[str]:
-    """The doubts of a whole table, in the order of track and time."""
+def speeds_of(epochs: pl.DataFrame) -> Speeds:
+    """The comparison of a whole table, in the order of track and time."""
     speeds = Speeds()
     speeds.see(epochs)
-    return speeds.doubts()
+    return speeds

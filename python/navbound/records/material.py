@@ -15,6 +15,7 @@ from navbound.records.truth import TruthDoubts
 if TYPE_CHECKING:
     from navbound.records.procedure import BesideProcedure, ProcedureFlown
     from navbound.records.run import CovarianceOrigin, CrossTrack, EventSummary, InputFile, Rejection, Waypoint
+    from navbound.records.scatter import Scatter
     from navbound.storage.frames import Frames
 
 LEFT_OUT = {"track": pl.String, "time_ns": pl.Int64}
@@ -68,6 +69,8 @@ class Material:
         Quantities that the user declares no column to be read as.
     position_doubts : list of str
         Why the positions may not be what they are read as (their unit, their motion), so that nothing can be shown.
+    scatter : Scatter, optional
+        How far the positions scatter along their way by their own speeds, which no covariance of a table holds.
     truth_doubts : TruthDoubts
         What speaks against the truth.
     satellites : DataFrame, optional
@@ -104,5 +107,6 @@ class Material:
     unread: list[str] = field(default_factory=list)
     set_aside: list[str] = field(default_factory=list)
     position_doubts: list[str] = field(default_factory=list)
+    scatter: Scatter | None = None
     truth_doubts: TruthDoubts = field(default_factory=TruthDoubts)
     satellites: pl.DataFrame | None = None

@@ -17,7 +17,7 @@ from navbound.read.checks.plausible import Limits, check
 from navbound.read.checks.repeats import left_out, separate
 from navbound.read.covariance import Claimed, claim, words_beside
 from navbound.read.pieces import PIECE_ROWS
-from navbound.read.speeds import doubts_of_speeds
+from navbound.read.speeds import speeds_of
 from navbound.read.tables.epochs import Reading, read
 from navbound.read.truth import TOLERANCE_S, truth_of, with_error, with_truth
 from navbound.records.material import Material, Operation
@@ -154,7 +154,14 @@ def material(
     inputs = [r.source for r in readings] + [
         source.record(None) for source in sorted_inputs.navigation if source not in sorted_inputs.observations
     ]
-    rejected, notes = [x for r in readings for x in r.rejected], sorted_inputs.cut_words() + [note for r in readings for note in r.notes]
+    rejected, notes = (
+        [x for r in readings for x in r.rejected],
+        [
+            *sorted_inputs.unused_words(),
+            *sorted_inputs.cut_words(),
+            *(note for r in readings for note in r.notes),
+        ],
+    )
     epochs, lost = _together(readings, rejected)
     labels = _labels(epochs)
     claimed = claim(epochs, sigma_m)
@@ -166,7 +173,8 @@ def material(
         if origin.id == "solved"
         else words_beside(claimed, _unread(readings))
     )
-    position_doubts = [*_doubts(readings, decided=truth is not None), *doubts_of_speeds(epochs), *doubts_of_axes(epochs)]
+    speeds = speeds_of(epochs)
+    position_doubts = [*_doubts(readings, decided=truth is not None), *speeds.doubts(), *doubts_of_axes(epochs)]
     truth_doubts, assumptions = TruthDoubts(), [of_covariance, plausibility.words]
     if truth is not None:
         epochs, words, other, truth_doubts = with_truth(epochs, named)
@@ -207,6 +215,7 @@ def material(
         unread=_unread(readings),
         set_aside=named.set_aside,
         position_doubts=position_doubts,
+        scatter=speeds.scatter(),
         truth_doubts=truth_doubts,
         satellites=pl.concat([r.satellites for r in readings if r.satellites is not None] or [pl.DataFrame(schema=schema(HEARD))]),
     )
@@ -302,6 +311,7 @@ def _in_pieces(file: Path, path: str | Path | None, truth: Truth, context: _Cont
         unread=reading.unread,
         set_aside=truth.set_aside,
         position_doubts=[*reading.position_doubts, *recorded.position_doubts, *([] if other is None else other.position_doubts)],
+        scatter=recorded.scatter,
         truth_doubts=compared.doubts,
     )
 

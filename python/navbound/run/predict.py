@@ -79,10 +79,7 @@ def place(text: str) -> PredictedPlace:
         Neither; no such runway; a latitude or longitude that is none.
     """
     if "/" in text:
-        try:
-            threshold = runway(text)
-        except InputError as e:
-            raise InputError("at", text, domain=e.domain) from e
+        threshold = runway(text, argument="at")
         return PredictedPlace(name=threshold.name, lat_rad=[threshold.lat_rad], lon_rad=[threshold.lon_rad], h_m=[threshold.elevation_m])
     domain = "LAT,LON or LAT,LON,H in degrees and metres, latitude within 90 and longitude within 180; or a runway, as LFPG/08R"
     try:

@@ -43,8 +43,9 @@ class CorrectedPositions:
         ``vpl_m``, ``mode``, ``n_sv``, ``n_redundant``, ``hdop``, ``vdop``, ``p_residual``, ``status``, ``reason``, with truth also
         ``truth_*`` and ``nse_*``. Null where there is none. The covariance is that of the service's error model: an upper bound.
     satellites : DataFrame
-        A row a satellite and solution: ``epoch`` (row of ``epochs``), ``prn``, ``el_rad``, ``residual_m`` (measured less modelled range),
-        ``sigma_m`` (by the error model), ``from_grid`` (false: the broadcast ionosphere served instead of the service's grid, en route).
+        A row a satellite and solution: ``epoch`` (row of ``epochs``), ``prn``, ``az_rad`` (clockwise from true north), ``el_rad``,
+        ``residual_m`` (measured less modelled range), ``sigma_m`` (by the error model), ``from_grid`` (false: the broadcast ionosphere
+        served instead of the service's grid, en route).
     unused : dict of str to int
         Satellite-epochs that were not used, by reason; those below the mask are not among them.
     models : dict of str to str

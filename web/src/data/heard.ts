@@ -1,7 +1,7 @@
 // The satellites that were heard, one by one, at the epochs of the track that is shown.
 
 import { blockOf } from "./others.ts";
-import type { Payload } from "./records.ts";
+import type { PackedTrack, Payload } from "./records.ts";
 import { runsOf } from "./runs.ts";
 import { Table } from "./table.ts";
 
@@ -20,7 +20,17 @@ export interface Satellite {
 export async function heardOf(payload: Payload, table: Table): Promise<Satellite[]> {
     const head = payload.heard.find((h) => h.track === table.track || table.track.startsWith(`${h.track} `));
     if (head === undefined) return [];
-    const rows = await Table.open(payload, head, blockOf(head));
+    return satellitesOf(await Table.open(payload, head, blockOf(head)), table);
+}
+
+/** The epochs at which any satellite is stated, as the table of a track that has no other. */
+export function epochsOf(head: PackedTrack, rows: Table): Table {
+    const elapsed_s = Float64Array.from(new Set(rows.elapsed_s)).sort();
+    return new Table({ ...head, n: elapsed_s.length, columns: [], words: {} }, new Map([["elapsed_s", elapsed_s]]), rows.start_utc_s);
+}
+
+/** Each satellite at the epochs of a table. */
+export function satellitesOf(rows: Table, table: Table): Satellite[] {
     return runsOf(rows.wordColumn("sv") ?? []).flatMap(({ label, from, to }) => {
         // An epoch without a position is not in the track.
         const here = Array.from({ length: to - from + 1 }, (_, k) => from + k).map((i) => ({ i, at: epochOf(rows, i, table) })).filter(({ at }) => at >= 0);

@@ -15,6 +15,11 @@ export function wordsOf(payload: Payload, fate: string | null): string {
     return fate === null ? "not heard" : payload.fates[fate] ?? fate;
 }
 
+/** Whether only the satellites of solutions are listed: a service's corrections say of the others why in words alone. */
+export function ofSolutions(payload: Payload): boolean {
+    return (payload.summary.performance?.service ?? null) !== null;
+}
+
 const SYSTEMS: Record<string, { name: string; hue: Colour; dash?: number[] }> = {
     G: { name: "GPS", hue: "m1" }, E: { name: "Galileo", hue: "m2", dash: [6, 2] }, C: { name: "BeiDou", hue: "m3", dash: [2, 2] },
 };

@@ -4,7 +4,7 @@ import { rowAt, type Satellite } from "../data/heard.ts";
 import type { Scene } from "../data/scene.ts";
 import { el, svg, valueOf } from "../show/dom.ts";
 import { clock, plain } from "../show/format.ts";
-import { EXCLUDED, systemOf, USED, wordsOf } from "./fates.ts";
+import { EXCLUDED, ofSolutions, systemOf, USED, wordsOf } from "./fates.ts";
 
 const R = 200;
 const ROOM = 26;
@@ -29,7 +29,8 @@ export function sky(host: HTMLElement, scene: Scene, satellites: Satellite[]): (
         moving.replaceChildren(...heard.flatMap(({ of, k }) => (of.el_rad[k]! > 0 ? [mark(of, k)] : [])));
         const used = heard.filter(({ of, k }) => of.fate[k] === USED);
         const others = heard.filter(({ of, k }) => of.fate[k] !== USED);
-        when.replaceChildren(`${clock(scene.table.utc_s(epoch))} UTC: `, valueOf("n_used", used.length, String(used.length)), ` of ${heard.length} satellites heard are in the position.`);
+        const of = ofSolutions(scene.payload) ? "" : ` of ${heard.length}`;
+        when.replaceChildren(`${clock(scene.table.utc_s(epoch))} UTC: `, valueOf("n_used", used.length, String(used.length)), `${of} satellites${of === "" ? "" : " heard"} are in the position.`);
         list.replaceChildren(...others.map(({ of, k }) => el("li", {}, el("strong", {}, of.sv), `: ${wordsOf(scene.payload, of.fate[k]!)}${height(of.el_rad[k]!)}`)));
     };
     const end = scene.cursor.watch(update);

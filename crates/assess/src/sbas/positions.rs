@@ -29,6 +29,8 @@ const URA_DO_NOT_USE: u8 = 15;
 pub struct Used {
     /// PRN code number.
     pub prn: u8,
+    /// Azimuth, clockwise from true north \[rad\].
+    pub az_rad: f64,
     /// Elevation \[rad\].
     pub el_rad: f64,
     /// Measured less modelled range \[m\].
@@ -171,6 +173,7 @@ impl Task<'_> {
             .or_else(|_| solve(service, &measured, &Receiver { near: None, ..near }, &mut self.sky))?;
         let used = self.sky.satellites().zip(&solution.residual_m).map(|(seen, residual)| Used {
             prn: seen.prn,
+            az_rad: seen.azimuth().rad(),
             el_rad: seen.elevation.rad(),
             residual_m: *residual,
             sigma_m: seen.error.variance_m2().sqrt(),

@@ -280,3 +280,35 @@ fn a_report_of_the_past_says_nothing_and_a_place_off_the_earth_is_none() {
     assert_eq!(motion.see(&report(5, 9e5, 100.0), &LIMITS), Ok(Finding::Plausible));
     assert!(motion.see(&Report { lat_rad: f64::NAN, ..report(11, 0.0, 100.0) }, &LIMITS).is_err());
 }
+
+/// Held for ten seconds at 275 m/s, and then interpolated to where the aircraft is four seconds later.
+#[test]
+fn positions_that_catch_up_after_a_hold_are_as_late_as_they_are_behind() {
+    use Finding::{Late, Plausible, Stale};
+    let speed = 275.0;
+    let north = |k: i64| match k {
+        0..=5 => speed * k as f64,
+        6..=14 => speed * 5.0,
+        15..=18 => speed * 5.0 + speed * 13.0 / 4.0 * (k - 14) as f64,
+        _ => speed * k as f64,
+    };
+    let caught_up: Vec<Report> = (0..30).map(|k| report(k, north(k), speed)).collect();
+    let found = findings(&caught_up, &LIMITS);
+    // The 17th is 2.25 s behind, of which 2 s, the noise and a twentieth of the way are allowed.
+    assert_eq!(found[8..17], [Stale; 9]);
+    assert!(found[17..].iter().all(|each| matches!(each, Plausible | Late)), "{:?}", &found[17..]);
+    // Where the first position after the hold is a new one nothing is late.
+    let fresh: Vec<Report> = (0..30).map(|k| report(k, if (6..15).contains(&k) { speed * 5.0 } else { speed * k as f64 }, speed)).collect();
+    assert!(findings(&fresh, &LIMITS)[15..].iter().all(|each| matches!(each, Plausible | Late)));
+    // Nor after a turn of three degrees a second at 100 m/s.
+    let turned = |k: i64| {
+        let way_rad = 3_f64.to_radians() * (k - 5).max(0) as f64;
+        let (radius_m, begun_m) = (100.0 / 3_f64.to_radians(), 500.0);
+        let (north_m, east_m) =
+            if k <= 5 { (100.0 * k as f64, 0.0) } else { (begun_m + radius_m * way_rad.sin(), radius_m * (1.0 - way_rad.cos())) };
+        let at = if (6..25).contains(&k) { (begun_m, 0.0) } else { (north_m, east_m) };
+        Report { lon_rad: 0.1 + at.1 / 6.37e6 / 0.8_f64.cos(), ..report(k, at.0, 100.0) }
+    };
+    let found = findings(&(0..40).map(turned).collect::<Vec<_>>(), &LIMITS);
+    assert!(found[25..].iter().all(|each| matches!(each, Plausible | Late)), "{:?}", &found[25..]);
+}

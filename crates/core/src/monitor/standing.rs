@@ -3,6 +3,7 @@
 use super::clock::arrival;
 use super::motion::{Limits, Report, within};
 use super::neighbours::east_north_m;
+use super::way::chord_share;
 use crate::quantity::GpsTime;
 use crate::special::float::hypot;
 
@@ -85,6 +86,52 @@ impl Owed {
     }
 }
 
+/// Share of the way by the reported speeds that the first positions after a hold must be beyond, turns apart: speeds are repeated, too.
+/// Provenance: ours.
+const CAUGHT_UP: f64 = 0.95;
+
+/// A position that stood, and the way by the reported speeds since. One that a stale hold is followed by is as late as the way that it lacks,
+/// until it has caught up: between a held position and a true one a source may interpolate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Held {
+    /// When it was new.
+    pub time: GpsTime,
+    /// Latitude \[rad\].
+    pub lat_rad: f64,
+    /// Longitude \[rad\].
+    pub lon_rad: f64,
+    /// The way since \[m\].
+    pub way_m: f64,
+    /// It stood until it was stale.
+    pub stale: bool,
+}
+
+impl Held {
+    const fn at(report: &Report) -> Self {
+        Self { time: report.time, lat_rad: report.lat_rad, lon_rad: report.lon_rad, way_m: 0.0, stale: false }
+    }
+
+    /// After the next report, and by how much its position is late after a hold \[s\]; 0 where it is not.
+    fn after(before: Option<Self>, report: &Report, unchanged: bool, passed_s: f64, limits: &Limits) -> (Self, f64) {
+        let Some(before) = before.filter(|held| within(report.time, held.time, RETURNS_S)) else { return (Self::at(report), 0.0) };
+        let way_m = before.way_m + if report.speed_mps > STANDS_MPS { report.speed_mps * passed_s } else { 0.0 };
+        let stale = before.stale || (unchanged && !within(report.time, before.time, limits.stale_after_s));
+        let held = Self { way_m, stale, ..before };
+        if unchanged {
+            return (held, 0.0);
+        }
+        let [east, north] = east_north_m([before.lat_rad, before.lon_rad], [report.lat_rad, report.lon_rad]);
+        let elapsed_s = report.time.seconds_since(before.time);
+        let made_good_m = hypot(east, north) + limits.noise_m;
+        let late_s = (CAUGHT_UP * chord_share(report.speed_mps, elapsed_s) * way_m - made_good_m) / report.speed_mps;
+        if stale && report.speed_mps > limits.moving_mps && late_s > limits.stale_after_s {
+            (held, late_s)
+        } else {
+            (Self::at(report), 0.0)
+        }
+    }
+}
+
 /// What an aircraft says of its own speed, above all while its position stays the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gone {
@@ -100,6 +147,10 @@ pub struct Gone {
     pub fell: Option<Fall>,
     /// Way to brake on that was not flown.
     pub owed: Option<Owed>,
+    /// The last position that was new, or that stood and is not caught up with.
+    pub held: Option<Held>,
+    /// By how much the position is late after a hold \[s\].
+    pub late_s: f64,
     /// The position has changed.
     pub moved: bool,
     /// How much longer than by their times the reports of a position took to arrive, at least \[s\].
@@ -108,7 +159,8 @@ pub struct Gone {
 
 impl Default for Gone {
     fn default() -> Self {
-        Self { seen: None, way_m: 0.0, stood_s: 0.0, braked_mps: f64::NAN, fell: None, owed: None, moved: false, crawled_s: 0.0 }
+        let (way_m, stood_s, crawled_s, late_s) = (0.0, 0.0, 0.0, 0.0);
+        Self { seen: None, way_m, stood_s, braked_mps: f64::NAN, fell: None, owed: None, held: None, late_s, moved: false, crawled_s }
     }
 }
 
@@ -126,6 +178,8 @@ impl Gone {
         let (way_m, stood_s) = if unchanged { (self.way_m, self.stood_s) } else { (0.0, 0.0) };
         self.way_m = way_m + if unchanged && speed_mps > STANDS_MPS { speed_mps * passed_s } else { 0.0 };
         self.stood_s = stood_s + if unchanged && speed_mps <= STANDS_MPS { passed_s } else { 0.0 };
+        let (held, late_s) = Held::after(self.held, report, unchanged && self.seen.is_some(), passed_s, limits);
+        (self.held, self.late_s) = (Some(held), late_s);
         let left_mps = self.braked_mps - BRAKING_MPS2 * elapsed_s;
         // A position that does not change leaves no way to brake on, however long that took.
         let braking_m = (self.braked_mps * self.braked_mps - speed_mps * speed_mps) / (2.0 * BRAKING_MPS2);
@@ -143,12 +197,13 @@ impl Gone {
     }
 
     /// For how long a position stands where no aircraft with its speeds could have stopped \[s\]: since a speed fell that none loses so fast, though
-    /// the position changes, or since it owes the way to brake on. None where it may be one, or where a receiver is known to stand.
+    /// the position changes, since it owes the way to brake on, or as late as it is after a hold. None where it may be one, or where a receiver is known to stand.
     pub fn stands_falsely(&self, report: &Report, limits: &Limits) -> Option<f64> {
         let fell = self.fell.filter(|fall| fall.from_moving).map(|fall| fall.time);
         let owes = self.owed.filter(|_| limits.moving_mps.is_finite()).and_then(|owed| owed.since);
         let lasting = |since: &GpsTime| !within(report.time, *since, limits.stale_after_s);
-        let since = [fell, owes].into_iter().flatten().filter(lasting).min()?;
+        let late = (self.late_s > 0.0).then(|| report.time.plus_seconds(-self.late_s));
+        let since = [fell, owes, late].into_iter().flatten().filter(lasting).min()?;
         Some(report.time.seconds_since(since))
     }
 }

@@ -32,9 +32,13 @@ pub const MARKS: usize = 32;
 /// s sin(w/2) / (w/2)        s = v t, w = a t / v, below one turn
 /// ```
 fn least_chord_m(speed_mps: f64, elapsed_s: f64) -> f64 {
+    speed_mps * elapsed_s * chord_share(speed_mps, elapsed_s)
+}
+
+/// The same as a share of the way.
+pub(super) fn chord_share(speed_mps: f64, elapsed_s: f64) -> f64 {
     let half = 0.5 * TURNING_MPS2 * elapsed_s / speed_mps;
-    let share = if half < WHOLE_RAD { 1.0 } else { sin(half.min(PI)) / half };
-    speed_mps * elapsed_s * share
+    if half < WHOLE_RAD { 1.0 } else { sin(half.min(PI)) / half }
 }
 
 /// What was flown up to a place.

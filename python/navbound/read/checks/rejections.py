@@ -62,6 +62,11 @@ class Rejections:
         each = [f"{r.count} rows left out, {r.reason} ({r.example})" for r in self.records[:_SHOWN]]
         return ": " + "; ".join(each) if each else ""
 
+    def without_position(self) -> str:
+        """Why a file without a single position is refused: rows that hold one and are left out are counted."""
+        held = "that may be used" if self.records else "with a time, a latitude and a longitude"
+        return f"no row {held}{self.in_words()}"
+
     def refuse_if_too_many(self, n_rows: int) -> None:
         """Refuse the file when more than the stated share of its rows is malformed.
 

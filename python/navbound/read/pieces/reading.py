@@ -275,7 +275,7 @@ def _second_pass(first: _FirstPass, every: int) -> PiecedReading:
     values.notes.extend(late.words(source.path, first.unit))
     if n == 0:
         first.rejections.refuse_if_too_many(first.n_rows)
-        raise FormatError(source.path, f"no row holds a time, a latitude and a longitude{first.rejections.in_words()}")
+        raise FormatError(source.path, first.rejections.without_position())
     return PiecedReading(
         source=source.record(first.n_rows),
         unused=first.mapping.unused,

@@ -209,7 +209,7 @@ def _left_out(*rows: pl.DataFrame) -> pl.DataFrame:
 
 def _not_empty(source: Source, out: pl.DataFrame, rejections: Rejections) -> None:
     if out.is_empty():
-        raise FormatError(source.path, f"no row holds a time, a latitude and a longitude{rejections.in_words()}")
+        raise FormatError(source.path, rejections.without_position())
 
 
 def _in_order(

@@ -18,6 +18,7 @@ from navbound.read.checks.refusals import of_navigation, of_observations, reject
 from navbound.read.checks.stated import ALERT, BESIDE_LEVEL, NO_LEVEL, UNREAD_ERROR
 from navbound.read.tables.epochs import read
 from navbound.read.truth import Truth, with_error, with_truth
+from navbound.run.evaluate import sky
 from navbound.run.inputs.solving import Solving, require_same_time
 from navbound.table.columns import COVARIANCE
 from navbound.table.declare import schema
@@ -75,6 +76,8 @@ class Part:
         Columns, or words of columns, that speak of integrity by their name and are not understood.
     n_stated_worse : int
         Usable epochs at which the file states an accuracy or an error above its horizontal protection level that no indicator uses.
+    heard : DataFrame, optional
+        What became of the satellites, where positions were solved here; columns `navbound.table.columns.HEARD`.
     position_doubts : list of str
         Why nothing can be shown of the positions, or of the errors and levels that a table states.
     """
@@ -85,6 +88,7 @@ class Part:
     notes: list[str]
     experimental: str = ""
     ranges: pl.DataFrame | None = None
+    heard: pl.DataFrame | None = None
     unread: list[str] = field(default_factory=list)
     n_stated_worse: int = 0
     position_doubts: list[str] = field(default_factory=list)
@@ -273,14 +277,15 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
     observations = gnss.read_observations(path)
     require_most_epochs(observations)
     require_same_time(observations, service.navigation)
-    ranges = None
+    ranges: pl.DataFrame | None = None
+    heard: pl.DataFrame | None
     if service.has_messages:
-        epochs, notes = _corrected(observations, service, truth)
+        epochs, notes, heard = _corrected(observations, service, truth)
     else:
-        how: dict[str, Any] = {"signals": "single", "systems": "G", "truth_ecef_m": truth.ecef_m, "keep_ranges": keep_ranges}
+        how: dict[str, Any] = {"signals": "single", "systems": "G", "truth_ecef_m": truth.ecef_m, "keep_ranges": True}
         positions = (solving or Solving()).solve(observations, service.navigation, **how)
         epochs, notes = positions.epochs, [OWN, *(f"{name}: {words}" for name, words in positions.models.items())]
-        ranges = positions.ranges
+        ranges, heard = positions.ranges if keep_ranges else None, positions.heard
     refused = [*of_observations(observations), *service.rejected()]
     notes += [*skipped_words(path.name, observations.skipped), *skipped_words("navigation data", service.navigation.skipped)]
     if truth.stated is not None and truth.ecef_m is None:
@@ -290,9 +295,10 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
     rejected = [one.model_dump() for one in refused]
     doubts = place_doubts(epochs, observations, truth)
     if service.has_messages:
-        return Part(uniform(epochs), observations.n_epochs, rejected, notes, position_doubts=doubts)
+        return Part(uniform(epochs), observations.n_epochs, rejected, notes, heard=heard, position_doubts=doubts)
     errors = None if ranges is None else _range_errors(ranges, epochs)
-    return Part(uniform(_of_own(epochs)), observations.n_epochs, rejected, notes, sbas.EXTRACTION_LABEL, errors, position_doubts=doubts)
+    own = uniform(_of_own(epochs))
+    return Part(own, observations.n_epochs, rejected, notes, sbas.EXTRACTION_LABEL, errors, heard, position_doubts=doubts)
 
 
 def place_doubts(epochs: pl.DataFrame, observations: gnss.Observations, truth: Truth) -> list[str]:
@@ -303,14 +309,14 @@ def place_doubts(epochs: pl.DataFrame, observations: gnss.Observations, truth: T
     return [f"{observations.path.name}: {words}" for words in (*header.doubts, *header.notes)]
 
 
-def _corrected(observations: gnss.Observations, service: Service, truth: Truth) -> tuple[pl.DataFrame, list[str]]:
-    """Positions with the corrections of the SBAS service and the protection levels of those solutions; words about them."""
+def _corrected(observations: gnss.Observations, service: Service, truth: Truth) -> tuple[pl.DataFrame, list[str], pl.DataFrame]:
+    """Positions with the corrections of the SBAS service and the levels of those solutions; words about them; their satellites."""
     messages = service.messages(int(observations.time_ns[0]), int(observations.time_ns[-1]))
     positions = sbas.solve(observations, service.navigation, messages, truth_ecef_m=truth.ecef_m)
     notes = [SAME, *service.words(), *(f"{name}: {words}" for name, words in positions.models.items())]
     # Without counts: the same words of many files stand once.
     notes.extend(f"Satellites left out where: {why}." for why in positions.unused)
-    return positions.epochs, notes
+    return positions.epochs, [*notes, sky.OF_SOLUTIONS], sky.of_service(positions)
 
 
 def _of_own(epochs: pl.DataFrame) -> pl.DataFrame:

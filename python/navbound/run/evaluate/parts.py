@@ -15,6 +15,8 @@ from navbound.errors import FormatError
 from navbound.kpi.catalogue import selected_levels
 from navbound.run.evaluate.levels import SCHEMA, Part, Service, from_observations, from_table
 from navbound.run.evaluate.monitored import from_monitor, monitor_of
+from navbound.table.columns import HEARD
+from navbound.table.declare import schema
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -86,7 +88,7 @@ def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
         options.solving.named,
     ]
     beside = sorted(s.sha256 for s in sources.navigation + sources.messages)
-    return json.dumps([inputs, options.stanford_esa is not None, SCHEMA.names(), beside])
+    return json.dumps([inputs, options.stanford_esa is not None, SCHEMA.names(), schema(HEARD).names(), beside])
 
 
 def _compute(source: Source, sources: Files, options: Options, truth: Truth, service: Service) -> Part:
@@ -121,17 +123,18 @@ def _remember(folder: Path, key: str, source: Source, part: Part) -> Stored:
     try:
         # Not before: a run that is refused at its first file leaves nothing behind.
         folder.mkdir(exist_ok=True)
-        if part.ranges is not None:
-            part.ranges.write_parquet(partial := _ranges_of(table).with_suffix(".partial"), compression="zstd")
-            partial.replace(_ranges_of(table))
+        for beside, path in ((part.ranges, _ranges_of(table)), (part.heard, _heard_of(table))):
+            if beside is not None:
+                beside.write_parquet(partial := path.with_suffix(".partial"), compression="zstd")
+                partial.replace(path)
         part.epochs.write_parquet(partial := table.with_suffix(".partial"), compression="zstd")
         partial.replace(table)
-        facts["digests"] = {path.name: _digest(path) for path in (table, _ranges_of(table)) if path.is_file()}
+        facts["digests"] = {path.name: _digest(path) for path in _files_of(table) if path.is_file()}
         partial = record.with_suffix(".partial")
         partial.write_text(json.dumps({"facts": facts, "sha256": _digest_of(facts)}), encoding="utf-8")
         partial.replace(record)
     except OSError as e:
-        for remains in (_ranges_of(table), table, record):
+        for remains in (*_files_of(table), record):
             remains.with_suffix(".partial").unlink(missing_ok=True)
         raise FormatError(folder, f"cannot be written: {e.strerror}") from e
     return Stored(table=table, source=source, **facts)
@@ -171,6 +174,15 @@ def _ranges_of(table: Path) -> Path:
     return table.with_suffix(".ranges.parquet")
 
 
+def _heard_of(table: Path) -> Path:
+    return table.with_suffix(".heard.parquet")
+
+
+def _files_of(table: Path) -> tuple[Path, ...]:
+    """Where a part's tables are; not every part has each."""
+    return table, _ranges_of(table), _heard_of(table)
+
+
 def tables_of(parts: list[Stored]) -> Iterator[pl.DataFrame]:
     """One part in memory at a time."""
     return (_read(part.table) for part in parts)
@@ -179,6 +191,11 @@ def tables_of(parts: list[Stored]) -> Iterator[pl.DataFrame]:
 def ranges_of_parts(parts: list[Stored]) -> Iterator[pl.DataFrame]:
     """The ranges of one part in memory at a time."""
     return (_read(_ranges_of(part.table)) for part in parts)
+
+
+def heard_of_parts(parts: list[Stored]) -> Iterator[pl.DataFrame | None]:
+    """The satellites of one part in memory at a time; none where it has none."""
+    return (_read(path) if (path := _heard_of(part.table)).name in part.digests else None for part in parts)
 
 
 def _read(table: Path) -> pl.DataFrame:

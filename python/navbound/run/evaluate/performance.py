@@ -6,7 +6,7 @@ import platform
 import sys
 import tempfile
 from contextlib import ExitStack
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,13 +21,15 @@ from navbound.records.run import CovarianceConsistency, InputFile, Rejection, Ru
 from navbound.records.verdict import LEAST_SHARE
 from navbound.run import directory
 from navbound.run.directory import Run
+from navbound.run.evaluate import sky
 from navbound.run.evaluate.monitored import CONTRADICTED, DECLARED_LEVELS, monitor_of, monitored
-from navbound.run.evaluate.parts import Stored, finished_parts, ranges_of_parts, tables_of
+from navbound.run.evaluate.parts import Stored, finished_parts, heard_of_parts, ranges_of_parts, tables_of
 from navbound.run.evaluate.service import service_of_files
 from navbound.run.evaluate.words import levels_verdict, performance_words
 from navbound.run.inputs.files import sort_out
 from navbound.run.inputs.solving import Solving
 from navbound.run.summary.consistency import consistency_of
+from navbound.run.summary.satellites import satellites_of
 from navbound.run.verdict import rule
 from navbound.run.verdict.belief import copied, of_level
 from navbound.run.verdict.results import beside_words, unread_words
@@ -48,7 +50,7 @@ MOST_CONSISTENCY = 1_000_000
 """Epochs whose covariances are compared with their errors: eleven days at 1 Hz, 100 MB."""
 CSV = "epochs.csv"
 """The epochs under the field's column names."""
-_OWN = {directory.RECORD, directory.SUMMARY, directory.EPOCHS, directory.EVENTS, directory.REPORT, PARTS, CSV}
+_OWN = {directory.RECORD, directory.SUMMARY, directory.EPOCHS, directory.EVENTS, directory.REPORT, directory.SATELLITES, PARTS, CSV}
 
 
 @dataclass(frozen=True)
@@ -174,7 +176,7 @@ def evaluate_files(
         result = result.model_copy(update={"notes": [*result.notes, *words], "service": log})
         run = _run(result, parts, events, inputs=_inputs(sources, truth, parts), options=options, command=command)
         if writer is None:
-            return Run(run.summary, run.record, pl.concat(tables_of(parts)), run.events, [])
+            return replace(run, table=pl.concat(tables_of(parts)))
         return _write(run, parts, writer)
 
 
@@ -252,7 +254,10 @@ def _run(
     joined = pl.concat(events).sort("onset_ns", "level", "kind", maintain_order=True)
     first = next(tables_of(parts)).head(1)
     honesty, notes = _consistency(parts)
-    return Run(_summary(result.model_copy(update={"notes": [*result.notes, *notes]}), parts, honesty), record, first, joined, [])
+    heard, words = sky.together(heard_of_parts(parts))
+    summary = _summary(result.model_copy(update={"notes": [*result.notes, *notes, *words]}), parts, honesty)
+    summary = summary.model_copy(update={"satellites": satellites_of(heard)})
+    return Run(summary, record, first, joined, [], satellites=heard)
 
 
 def _consistency(parts: list[Stored]) -> tuple[CovarianceConsistency | None, list[str]]:
@@ -380,9 +385,12 @@ def _write(run: Run, parts: list[Stored], folder: folders.Writer) -> Run:
     folder.write(CSV, lambda path: write_csv(tables_of(parts), path, _marked(run)))
     folder.write(directory.EVENTS, lambda path: run.events.write_parquet(path, compression="zstd"))
     folder.text(directory.RECORD, run.record.model_dump_json(indent=1))
-    folder.write(directory.REPORT, lambda path: render(run.summary, run.record, run.epochs, run.events.clear(), [], path))
+    heard = run.satellites
+    if heard is not None:
+        folder.write(directory.SATELLITES, lambda path: heard.write_parquet(path, compression="zstd"))
+    folder.write(directory.REPORT, lambda path: render(run.summary, run.record, run.epochs, run.events.clear(), [], path, satellites=heard))
     folder.text(directory.SUMMARY, run.summary.model_dump_json(indent=1))
-    return Run(run.summary, run.record, run.epochs, run.events, [], folder.folder)
+    return replace(run, path=folder.folder)
 
 
 def _marked(run: Run) -> str:

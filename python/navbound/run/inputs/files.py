@@ -53,6 +53,13 @@ class Files:
         raw = any(_raw(source) for source in map(load, (source.path for source in self.tables)))
         return f" (taken for tables of positions: {names})" + ("; --solve takes the raw measurements of a receiver's log" if raw else "")
 
+    def unused_words(self) -> list[str]:
+        """Files of SBAS messages, where positions are solved without a service."""
+        others = {source.path for source in self.tables + self.observations}
+        alone = [source.path.name for source in self.messages if source.path not in others]
+        words = "messages of an augmentation service are not used here; navbound evaluate corrects positions with them."
+        return [f"{name}: {words}" for name in alone]
+
     def cut_words(self) -> list[str]:
         """Text files of records that end within a line, as files do that were cut."""
         every = {source.path: source for source in self.observations + self.navigation + self.messages if source.open_end}

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
+    from navbound.records.scatter import Scatter
     from navbound.run.pieces.truth import PiecedTruth
     from navbound.run.pieces.ways import Way
 
@@ -95,6 +96,8 @@ class InPieces:
         How many tracks were divided.
     position_doubts : list of str
         That they do not travel as far, or whither, its speeds and tracks say.
+    scatter : Scatter, optional
+        How far they scatter along their way.
     ends : DataFrame
         ``track``, ``start`` and ``end`` of every track that is judged. [GPS ns]
     """
@@ -110,6 +113,7 @@ class InPieces:
     period_s: float
     flights: list[str]
     position_doubts: list[str]
+    scatter: Scatter | None
     ends: pl.DataFrame
 
 
@@ -165,6 +169,7 @@ def in_pieces(path: Path, request: Request) -> InPieces:
         period_s=steps.median_s(),
         flights=flights.words(),
         position_doubts=[*checks.speeds.doubts(), *checks.axes.words()],
+        scatter=checks.speeds.scatter(),
         ends=ends.table(),
     )
 

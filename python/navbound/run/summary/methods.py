@@ -12,8 +12,11 @@ from navbound.records.run import MethodResult
 from navbound.storage.tables import Places, numbers, pieces
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
+    from navbound.records.run import Belief
     from navbound.storage.tables import Table
 
 
@@ -37,6 +40,17 @@ def method_result(method_id: str, risk: float, known: NDArray[np.float64], score
         "max_m": float(known.max()) if len(known) else None,
     }
     return MethodResult.model_validate(described | (scored or dict.fromkeys(_SCORES)))
+
+
+def of_belief(results: Sequence[MethodResult], belief: Belief | None) -> list[MethodResult]:
+    """The results with the interval that the verdict rests on, where it has checked the same epochs: a share has one interval in a run."""
+    checks = {} if belief is None else {(each.method, each.risk, each.n): each for each in (*belief.bounds, *belief.beside)}
+    return [
+        result
+        if (check := checks.get((result.id, result.risk, result.n))) is None or check.coverage != result.coverage
+        else result.model_copy(update={name: getattr(check, name) for name in ("coverage_low", "coverage_high", "n_effective")})
+        for result in results
+    ]
 
 
 def evaluated(epochs: Table, method_id: str, risk: float, *, integrity: bool) -> MethodResult:

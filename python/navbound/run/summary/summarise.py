@@ -10,7 +10,7 @@ from navbound.records.run import EventSummary, Summary
 from navbound.run.summary.approaches import approaches_of, deviation_bands, deviation_groups
 from navbound.run.summary.consistency import consistency_of
 from navbound.run.summary.groups import phases, protection_of, tracks
-from navbound.run.summary.methods import evaluated
+from navbound.run.summary.methods import evaluated, of_belief
 from navbound.run.summary.satellites import satellites_of
 from navbound.run.summary.sums import Sums
 from navbound.run.summary.verdict import facts_of, verdict_of
@@ -65,19 +65,21 @@ def summarise(
     protection = protection_of(epochs, material.limits_held)
     approaches = approaches_of(epochs, method(judging))
     facts = facts_of(sums, epochs, accuracy, risks)
+    verdict = verdict_of(material, facts, accuracy, risks, protection)
+    integrity = [evaluated(epochs, i, risk_integrity, integrity=True) for i in ids]
     return Summary(
         kind=material.kind,
         operation=material.operation,
         title=material.title,
-        verdict=verdict_of(material, facts, accuracy, risks, protection),
+        verdict=verdict,
         coverage_kind=evaluation.CLOSED_LOOP if material.kind == "fly" else evaluation.REPEATED,
         assumptions=material.assumptions,
         covariance=material.covariance,
         phases=phases(sums, material.sample_period_s),
         protection=protection,
         tracks=tracks(sums, material.labels, events),
-        accuracy=accuracy,
-        integrity=[evaluated(epochs, i, risk_integrity, integrity=True) for i in ids],
+        accuracy=of_belief(accuracy, facts.belief),
+        integrity=of_belief(integrity, facts.belief),
         honesty=consistency_of(epochs),
         states=states,
         events=listed(events),

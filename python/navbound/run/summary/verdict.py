@@ -81,6 +81,7 @@ def verdict_of(
 ) -> Verdict:
     """The verdict and its words."""
     judge, belief = stated[0], known.belief
+    position_doubts = [*material.position_doubts, *_scattered(material, known, judge.id)]
     n_epochs, n_degraded = known.n_recorded + known.n_missing, known.n_status.get("degraded", 0)
     facts = rule.TrackFacts(
         n_epochs=n_epochs,
@@ -95,7 +96,7 @@ def verdict_of(
         n_without_level=known.doubts.n_without_level,
         n_apart=0 if known.doubts.neighbours is None else known.doubts.neighbours.n,
         truth_lost=material.truth_doubts.n > 0 and known.n_truth <= material.truth_doubts.n,
-        position_doubted=bool(material.position_doubts),
+        position_doubted=bool(position_doubts),
         path_doubted=material.beside is not None and bool(material.beside.doubts),
         n_approaches=material.n_approaches,
         n_unjudged_approaches=material.n_unjudged_approaches,
@@ -128,7 +129,7 @@ def verdict_of(
         n_stated_uncontained=known.doubts.n_stated_uncontained,
         unread=material.unread,
         set_aside=material.set_aside,
-        position_doubts=material.position_doubts,
+        position_doubts=position_doubts,
         n_apart=facts.n_apart,
         largest_apart_m=known.doubts.neighbours.largest_m if known.doubts.neighbours is not None and facts.n_apart else None,
         n_without_level=known.doubts.n_without_level,
@@ -147,6 +148,23 @@ def verdict_of(
     words, lead = verdict_words(verdict, judge, risks, material.covariance, material.labels)
     of_levels = protection_words(protection)
     return verdict.model_copy(update={"words": f"{words}{of_levels}", "lead": f"{lead}{of_levels}"})
+
+
+def _scattered(material: Material, known: VerdictFacts, judging: str) -> list[str]:
+    """A doubt where positions scatter along their way by more than the covariance leaves of the limit, and no truth checks it.
+
+    A deviation that is typed or coded holds no age of a position, and a covariance of a table seldom does.
+    """
+    worst, scatter = known.worst[0], material.scatter
+    if scatter is None or worst is None or known.n_truth or method(judging).error_column != "nse_h_m" or worst.margin_m < 0.0:
+        return []
+    if scatter.along_m <= worst.margin_m:
+        return []
+    return [
+        f"The positions scatter along their way by {scatter.along_m:.0f} m (95 % of {scatter.n} steps of track {scatter.track}, less what "
+        f"their own speeds say): positions are older or younger than their rows, which the covariance does not hold, and the bound leaves "
+        f"{worst.margin_m:.0f} m of the limit"
+    ]
 
 
 def _assumed(material: Material, judging: str) -> list[Literal["sigma_typed", "sigma_coded", "no_path"]]:
