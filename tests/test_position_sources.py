@@ -181,6 +181,38 @@ def test_a_name_of_several_words_is_foreign_by_one_of_them(tmp_path: Path, name:
     assert stating(tmp_path, name, value) == (True, [])
 
 
+@pytest.mark.parametrize(
+    ("name", "value", "against"),
+    [
+        ("Reporting Facility", "FlightAware MLAT", True),
+        ("sensor", "T-MLAT7", True),
+        ("comment", "multilaterated", True),
+        ("source", "T-MLAT1", True),
+        ("source", "Projected", True),
+        ("PosStale", "true", True),
+        ("CST", 1, True),
+        ("CST", 0, False),
+        ("update_type", "M", True),
+        ("update_type", "A", False),
+        ("sensor", "LFPG north", False),
+    ],
+)
+def test_whose_a_position_is_may_stand_anywhere(tmp_path: Path, name: str, value: object, against: bool) -> None:
+    run = navbound.analyze(table(tmp_path / "a.csv", N, added={name: [value] * N}))
+    assert (run.summary.verdict.id == "inside") != against
+
+
+def test_a_column_without_a_name_is_seen_by_its_place(tmp_path: Path) -> None:
+    path = table(tmp_path / "a.csv", N, added={"remark": ["GPS PRIMARY LOST"] * N})
+    path.write_text(path.read_text().replace("remark", "", 1))
+    run = navbound.analyze(path)
+    assert run.summary.verdict.id == "not_shown"
+    path.write_text(path.read_text().replace("GPS PRIMARY LOST", "12"))
+    run = navbound.analyze(path)
+    assert run.summary.verdict.id == "inside"
+    assert any("columns not used: column " in each for each in run.summary.assumptions)
+
+
 def test_a_word_of_such_a_column_that_is_not_known_is_named(tmp_path: Path) -> None:
     assert stating(tmp_path, "source", "B738") == (False, ["source (b738)"])
 

@@ -48,6 +48,16 @@ def test_one_unhealthy_record_leaves_a_satellite_out_of_the_day_and_names_it(tmp
         assert (set(kept.satellite), kept.notes) == (set(whole.satellite), ())
 
 
+def test_satellites_whose_records_cannot_be_read_are_named(tmp_path: Path) -> None:
+    n = records("G05")
+    all_of_it, one = (gnss.constellation(changed(tmp_path, "G05", which, value=float("nan"))) for which in (set(range(n)), {0}))
+    assert ("G05" in all_of_it.satellite, "G05" in one.satellite) == (False, True)
+    assert all_of_it.notes[0].startswith(f"b.rnx: {n} records cannot be read (the first in line ")
+    assert all_of_it.notes[0].endswith("; G05 left out, without any other.")
+    assert one.notes[0].startswith("b.rnx: 1 record cannot be read (the first in line ")
+    assert "left out" not in one.notes[0]
+
+
 @pytest.mark.parametrize(("which", "healthy"), [(0, False), (1, True)])
 def test_the_nearest_record_says_whether_a_satellite_is_healthy(tmp_path: Path, which: int, healthy: bool) -> None:
     table = gnss.read_navigation(BROADCAST).records()

@@ -52,7 +52,7 @@ def reasons(run: Run) -> set[str | None]:
     ("age_s", "reason", "verdict"),
     [(0.5, None, "inside"), (1.0, None, "inside"), (1.5, "position_held", "nothing_judged"), (5.0, "position_stale", "nothing_judged")],
 )
-@pytest.mark.parametrize("name", ["last_position", "lastposupdate", "time_position"])
+@pytest.mark.parametrize("name", ["last_position", "lastposupdate", "time_position", "PosTime", "time_of_applicability", "fix_time"])
 def test_an_old_position_is_as_one_that_repeats(tmp_path: Path, name: str, age_s: float, reason: str | None, verdict: str) -> None:
     run = analyzed(tmp_path, rows(**column(name, lambda k: 1_700_000_000 + k - age_s)))
     assert (reasons(run), run.summary.verdict.id) == ({reason}, verdict)
@@ -156,6 +156,37 @@ def test_positions_that_end_elsewhere_than_speed_and_track_lead_are_doubted(
     left_out = {"ground_track_rad": "-"}
     without = navbound.analyze(tmp_path / "a.json", columns=left_out).summary.verdict
     assert (without.id, "ground_track_rad set aside by the user: inside" in without.lead) == ("inside", True)
+
+
+def test_a_time_of_the_position_that_cannot_be_read_shows_nothing(tmp_path: Path) -> None:
+    clock = rows(time_position=lambda k: f"22:{12 + k // 60:02d}:{k % 60:02d}")
+    verdict = analyzed(tmp_path, clock).summary.verdict
+    assert verdict.id == "not_shown"
+    assert verdict.position_doubts == [
+        f"a.json: “time_position” says when positions were valid, and {N} of its {N} fields cannot be read as a time"
+    ]
+    some = rows(time_position=lambda k: "n/a?" if k % 3 == 0 else 1_700_000_000 + k)
+    assert analyzed(tmp_path, some).summary.verdict.position_doubts == []
+
+
+def test_the_velocity_of_opensky_is_in_metres_per_second(tmp_path: Path) -> None:
+    led = [
+        {"icao24": "3c6444", "velocity": 250.0} | {k: v for k, v in row.items() if k != "ground_speed_mps"}
+        for row in rows(600, lat_deg=lambda k: 48.0 + (250.0 * k + 90.0 * max(0, k - 200)) * DEG_PER_M)
+    ]
+    run = analyzed(tmp_path, led)
+    assert run.epochs["ground_speed_mps"].unique().to_list() == [250.0]
+    assert "position_ahead" in reasons(run)
+
+
+@pytest.mark.parametrize(
+    ("indicators", "contained"),
+    [({"nic": 0, "rc": 0}, False), ({"nic": 0, "rc": 186}, False), ({"nic": 8, "rc": 186}, True), ({"rc": 0}, False)],
+)
+def test_a_radius_of_nothing_contains_nothing(tmp_path: Path, indicators: dict[str, int], contained: bool) -> None:
+    verdict = analyzed(tmp_path, rows(**indicators)).summary.verdict
+    assert (verdict.id == "inside") == contained
+    assert (verdict.n_stated_uncontained > 0) != contained
 
 
 def test_of_two_speeds_the_larger_counts(tmp_path: Path) -> None:

@@ -225,6 +225,7 @@ class TrackJudges:
 _Reports = tuple[NDArray[np.int64], NDArray[np.int64], _F, _F, _F]
 
 SPEEDS_BESIDE: int
+TURNING_MPS2: float
 GGA_QUALITIES: list[int]
 DETERMINING_SATELLITES: int
 MOST_DILUTION: float

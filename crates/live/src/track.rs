@@ -8,7 +8,7 @@ use navbound_core::judge::{self, Judge};
 use navbound_core::monitor::ahead::{Ahead, Reached};
 use navbound_core::monitor::motion::{LastSpeed, Motion, Report};
 use navbound_core::monitor::neighbours::{Height, Neighbours, Place};
-use navbound_core::monitor::standing::{Fall, Gone, Held, Owed};
+use navbound_core::monitor::standing::{Fall, Gone, Owed, Stood};
 use navbound_core::monitor::way::{Mark, Through, Way};
 use navbound_core::quantity::{GpsTime, Metres};
 
@@ -92,10 +92,10 @@ impl Track {
             [owed.lat_rad, owed.lon_rad, owed.way_m].into_iter().for_each(|number| to.f64(number));
             to.option(owed.since, |to, since| to.i64(since.nanoseconds()));
         });
-        to.option(gone.held, |to, held| {
-            to.i64(held.time.nanoseconds());
-            [held.lat_rad, held.lon_rad, held.way_m].into_iter().for_each(|number| to.f64(number));
-            to.flag(held.stale);
+        to.option(gone.stood, |to, stood| {
+            to.i64(stood.time.nanoseconds());
+            [stood.lat_rad, stood.lon_rad, stood.way_m, stood.early_m].into_iter().for_each(|number| to.f64(number));
+            to.flag(stood.stale);
         });
         to.f64(gone.late_s);
         to.flag(gone.moved);
@@ -166,9 +166,10 @@ impl Track {
                 let [lat_rad, lon_rad, way_m] = [from.f64()?, from.f64()?, from.f64()?];
                 Ok(Owed { lat_rad, lon_rad, way_m, since: from.option(Reader::i64)?.map(GpsTime::from_nanoseconds) })
             })?,
-            held: from.option(|from| {
+            stood: from.option(|from| {
                 let time = GpsTime::from_nanoseconds(from.i64()?);
-                Ok(Held { time, lat_rad: from.f64()?, lon_rad: from.f64()?, way_m: from.f64()?, stale: from.flag()? })
+                let [lat_rad, lon_rad, way_m, early_m] = [from.f64()?, from.f64()?, from.f64()?, from.f64()?];
+                Ok(Stood { time, lat_rad, lon_rad, way_m, early_m, stale: from.flag()? })
             })?,
             late_s: from.f64()?,
             moved: from.flag()?,

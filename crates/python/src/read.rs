@@ -4,6 +4,7 @@ use crate::error::{format_error, input_error};
 use navbound_assess::error::navigation_errors;
 use navbound_assess::plausible::{Finding, Limits, Report, SPEEDS_BESIDE, Survey, Track};
 use navbound_core::monitor::neighbours::{self, Apart, Place};
+use navbound_core::monitor::way::TURNING_MPS2;
 use navbound_core::quantity::{GpsTime, OutOfDomain};
 use navbound_formats::packed::{Limit, unpack_within};
 use navbound_formats::{measured, rtklib, time};
@@ -283,6 +284,7 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(unix_from_gps_ns, m)?)?;
     m.add_function(wrap_pyfunction!(navigation_error, m)?)?;
     m.add("SPEEDS_BESIDE", SPEEDS_BESIDE)?;
+    m.add("TURNING_MPS2", TURNING_MPS2)?;
     m.add("GGA_QUALITIES", numbers(measured::GGA_QUALITIES))?;
     m.add_function(wrap_pyfunction!(neighbours_apart, m)?)?;
     m.add("NEIGHBOUR_RISK", neighbours::RISK)?;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -237,7 +238,27 @@ def _broadcast(content: bytes, path: Path, near_ns: int | None, *, unhealthy: bo
         notes.append(f"{path.name}: left out, as {reason}: {_listed(called)}.")
     if far:
         notes.append(f"{path.name}: left out, as all their records are more than a day from {utc_text(reference)} UTC: {', '.join(far)}.")
+    notes += _refused_words(path.name, content, navigation.refused, {*names, *called, *far})
     return Orbits(tuple(names), of, axis, eccentricity, inclination, node, perigee, anomaly, node_rate, reference, tuple(notes))
+
+
+_RECORD = re.compile(r"([A-Z][ \d]\d)\s|\s?(\d{1,2})\s+\d")
+"""The first line of a record: its satellite, which versions before 3 write without a letter."""
+
+
+def _refused_words(name: str, content: bytes, refused: Sequence[tuple[str, int, str, str, str]], known: set[str]) -> list[str]:
+    """How many records cannot be read, and the satellites that have no other."""
+    if not refused:
+        return []
+    lines, of = content.decode("latin-1").splitlines(), set[str]()
+    for _, line, *_ in refused:
+        begins = (_RECORD.match(text) for text in reversed(lines[:line]))
+        if (begin := next(filter(None, begins), None)) is not None:
+            of.add(begin[1].replace(" ", "0") if begin[1] else f"G{int(begin[2]):02d}")
+    without = ", ".join(sorted(of - known))
+    alone = f"; {without} left out, without any other" if without else ""
+    n = "1 record" if len(refused) == 1 else f"{len(refused)} records"
+    return [f"{name}: {n} cannot be read (the first in line {refused[0][1]}: {refused[0][3]}){alone}."]
 
 
 def _unpromised(records: dict[str, Any], time_ns: int) -> dict[str, tuple[int, int]]:

@@ -267,7 +267,7 @@ def solve(
 def compared_words(compared: tuple[int, int], n_epochs: int) -> str:
     """At how many epochs codes were compared with their phases: at the others nothing shows that all of them are led off together."""
     n, n_dropped = compared
-    dropped = f"; a lead was dropped {n_dropped} times, as hardly any phase went on: whether it went on is not known" if n_dropped else ""
+    dropped = f"; hardly any phase went on {n_dropped} times during a lead, and what it was before is not seen" if n_dropped else ""
     return f"codes compared with carrier phases at {n} of {n_epochs} epochs; at the others a lead of all codes is not seen{dropped}"
 
 

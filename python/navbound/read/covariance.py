@@ -205,8 +205,13 @@ def _with_containment(epochs: pl.DataFrame) -> pl.DataFrame:
         for name, radii in (("nic", NIC_RC_M), ("nuc_p", NUCP_RC_M))
         if name in have
     }
-    stated = ([_in_force("rc_m")] if "rc_m" in have else []) + ([coded["nic"]] if "nic" in have else [])
-    radii = ([pl.coalesce(stated)] if stated else []) + ([pl.col("unread_level_m")] if "unread_level_m" in have else [])
+    # Decoders write a radius of 0 where there is none; beside a NIC of 0 no radius is contained.
+    radius = pl.when(_in_force("rc_m") > 0.0).then(_in_force("rc_m")).when(_in_force("rc_m").is_not_null()).then(math.inf)
+    stated = ([radius] if "rc_m" in have else []) + ([coded["nic"]] if "nic" in have else [])
+    without = coded["nic"].is_infinite() if "nic" in have else pl.lit(value=False)
+    radii = ([pl.when(without).then(math.inf).otherwise(pl.coalesce(stated))] if stated else []) + (
+        [pl.col("unread_level_m")] if "unread_level_m" in have else []
+    )
     radii += [coded["nuc_p"]] if "nuc_p" in have else []
     return epochs.with_columns(pl.max_horizontal(radii).alias(CONTAINMENT))
 
@@ -287,7 +292,9 @@ def _coded(epochs: pl.DataFrame, have: set[str]) -> Claimed:
         coded = (
             _in_force("nic").replace_strict(NIC_RC_M, default=None, return_dtype=pl.Float64) if "nic" in have else pl.lit(None, pl.Float64)
         )
-        radius = pl.coalesce(_in_force("rc_m"), coded) if "rc_m" in have else coded
+        contained = _in_force("nic") > 0 if "nic" in have else pl.lit(value=True)
+        own = pl.when((_in_force("rc_m") > 0.0) & contained.fill_null(value=True)).then(_in_force("rc_m")) if "rc_m" in have else None
+        radius = coded if own is None else pl.coalesce(own, coded)
         words = (
             f"Covariance: circular, sigma = Rc / {1 / k_rc:.4f}, taking the containment radius Rc at a risk of {RC_RISK:g}, source "
             f"integrity level 3 {coding}. Rc is an integrity limit, so this sigma is a stand-in."

@@ -28,14 +28,14 @@ COMPUTED = _words(
     "tisb tis_b tisb_icao tisb_trackfile tisb_other adsr adsr_icao adsr_other ads_r rebroadcast "
     "radar psr ssr mssr primary_radar secondary_radar surveillance_radar primary_surveillance_radar secondary_surveillance_radar "
     "surface_movement_radar asterix estimated interpolated extrapolated predicted propagated coasted coasting dead_reckoning synthetic "
-    "simulated"
+    "simulated projected"
 )
 """Words of positions that others computed or repeat, or that nothing measured."""
 
 FOREIGN = COMPUTED | _words("adsc ads_c mode_s modes mode_ac mode_a_c")
 """Words of sources whose positions are none that the aircraft claims a category of."""
 
-NAMED_COMPUTED = rf"(?:^|[^a-z0-9])(?:multilat[a-z]*|{'|'.join(sorted(COMPUTED))})(?:[^a-z0-9]|$)"
+NAMED_COMPUTED = rf"(?:^|[^a-z0-9])(?:multilat[a-z]*|mlat[0-9]+|{'|'.join(sorted(COMPUTED))})(?:[^a-z0-9]|$)"
 """In lower case with `_` for blanks and hyphens: a name of several words, one of which is such a word, as `ads_b/mlat`."""
 
 OWN = _words(
@@ -62,6 +62,11 @@ LISTS = _words(
     "tisb is_tisb by_tisb from_tisb tisb_position position_tisb"
 )
 """Columns that say whether others computed a position: a truth value, or the names of the values that are theirs."""
+
+UPDATE_TYPE = _words("update_type updatetype")
+UPDATE_FOREIGN, UPDATE_OWN = _words("p o z m d x v"), _words("a s")
+"""Letters of FlightAware in them: projected, oceanic, radar, multilateration, datalink, surface, virtual; ADS-B from ground or space.
+Provenance: standard, from knowledge of the interface."""
 
 READSB = _words("hex seen_pos")
 """A table with both is one of readsb's aircraft: its `type` is how the position came, and a row without one claims nothing."""

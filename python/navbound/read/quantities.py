@@ -214,7 +214,11 @@ WEEK = {"gps_week": "a GPS week", "gps_tow_s": "a time of week"}
 POSITION_TIME = "position_time_ns"
 """When a position was valid, GPS time [ns]; the row's own time is that of the report."""
 
-POSITION_TIME_NAMES = ("position_time_ns", "last_position", "lastposupdate", "time_position", "position_time", "lastposition")
+POSITION_TIME_NAMES = (
+    *("position_time_ns", "last_position", "lastposupdate", "last_pos_update", "time_position", "position_time", "lastposition"),
+    *("pos_time", "postime", "time_of_position", "timestamp_position", "position_timestamp", "pos_timestamp", "position_epoch"),
+    *("time_of_applicability", "time_of_fix", "fix_time", "fixtime", "time_of_validity", "position_utc", "pos_utc"),
+)
 """Columns that say when a row's position was valid, where its time is that of the report."""
 
 
@@ -227,6 +231,9 @@ OPENSKY_STATES: dict[str, tuple[str, str]] = {
 }
 """State vectors as the OpenSky Network stores them, in SI; its ``heading`` is the track. A table is one when it has all these names,
 some of which mean something else elsewhere."""
+
+OPENSKY_VELOCITY: dict[str, tuple[str, str]] = {"track": ("icao24", "text"), "ground_speed_mps": ("velocity", "mps")}
+"""Some columns of the same, under its own names: who flies, and its speed."""
 
 FLIGHTRADAR24: dict[str, tuple[str, str]] = {
     "est_lat_rad": ("position latitude", "deg"),

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
-from navbound.read.checks.places import east_north_m
+from navbound.read.checks.places import east_north_m, half_turn_s
 from navbound.read.checks.plausible import plausible_rows
 from navbound.read.tables.columns import NO_COLUMN, declare
-from navbound.records.scatter import Scatter
+from navbound.records.material import Scatter
 from navbound.table.columns import HORIZONTAL
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
 _WINDOW_S = 60.0
@@ -48,8 +50,8 @@ Provenance: ours. [1]"""
 _GROSS_M = 2_000.0
 """A patrol at 25 to 45 m/s with a row each ten seconds turns between them: 1 km in three of its 235 minutes. Provenance: ours. [m]"""
 _MOST_EXCESS_M, _EXCESS_M = 20_000.0, 100.0
-"""What the displacements of a track may go beyond their margins in all, and for each window more: the largest of honest tracks are 11 km in
-14 windows (repeated speeds, Paris) and 3.5 km in 66 (Switzerland). Provenance: ours. [m]"""
+"""What the displacements of a track may go beyond their margins in all, and for each window more: the largest of tracks that are right are
+11 km in 14 windows (repeated speeds, Paris) and 3.5 km in 66 (Switzerland). Provenance: ours. [m]"""
 
 
 _SCATTER_BINS_M = np.geomspace(1.0, 1e5, 201)
@@ -114,7 +116,7 @@ class Speeds:
     """Ways over windows of a minute, of epochs in the order of track and time, in pieces of any length."""
 
     def __init__(self) -> None:
-        self._longer, self._shorter, self._aside = _Test(), _Test(), _Test(expected=0.0)
+        self._longer, self._shorter, self._directions = _Test(), _Test(), _Directions()
         self._waiting: pl.DataFrame | None = None
         self._steps = _Steps()
 
@@ -127,10 +129,11 @@ class Speeds:
         own = {"_speed": speed, "_sigma": _sigma_m(epochs), "_whither": _whither(epochs), "_plausible": plausible_rows(epochs)}
         rows = epochs.select("track", "time_ns", "est_lat_rad", "est_lon_rad", **own)
         self._steps.see(rows)
-        rows = rows.with_columns(pl.when(pl.col(name).is_finite()).then("time_ns").alias(f"{name}_ns") for name in _CARRIED)
+        self._directions.see(rows)
+        rows = rows.with_columns(_speed_ns=pl.when(pl.col("_speed").is_finite()).then("time_ns"))
         rows = rows if self._waiting is None else pl.concat([self._waiting, rows])
-        rows = rows.with_columns(_carried(name) for name in _CARRIED).with_columns(
-            pl.col([f"{name}_ns" for name in _CARRIED]).forward_fill().over("track"), _window=pl.col("time_ns") // _WINDOW_NS
+        rows = rows.with_columns(_speed=_CARRIED).with_columns(
+            pl.col("_speed_ns").forward_fill().over("track"), _window=pl.col("time_ns") // _WINDOW_NS
         )
         # The last window may go on in the next piece.
         last = (pl.col("track") == rows["track"][-1]) & (pl.col("_window") == rows["_window"][-1])
@@ -139,46 +142,16 @@ class Speeds:
 
     def _judge(self, rows: pl.DataFrame, open_window: int) -> None:
         """The windows of some rows, without that of the last so many."""
-        time_s = (rows["time_ns"] - rows["time_ns"][0]).to_numpy() * 1e-9
-        place = rows.select("est_lat_rad", "est_lon_rad").to_numpy()
-        step_s, step_m = np.diff(time_s), np.hypot(*east_north_m(place[:-1], place[1:]).T)
-        speed, sigma = rows["_speed"].to_numpy(), rows["_sigma"].to_numpy()
-        stated_m = 0.5 * (speed[:-1] + speed[1:]) * step_s
-        whither = rows["_whither"].to_numpy()
-        towards = np.column_stack([np.sin(whither), np.cos(whither)])
-        stated_en_m, towards_s = (0.5 * (each[:-1] + each[1:]) * step_s[:, None] for each in (speed[:, None] * towards, towards))
-        track = rows["track"].rle_id().to_numpy()
-        plausible = rows["_plausible"].to_numpy()
-        sound = plausible[1:] & plausible[:-1]
-        sound &= np.isfinite(step_m) & (step_s > 0) & (step_s <= _LONGEST_STEP_S) & (track[1:] == track[:-1])
-        # A step belongs to the window in which it begins.
-        of = rows.select(pl.struct("track", "_window").rle_id())["track"].to_numpy()[: rows.height - open_window]
-        if of.size == 0:
-            return
-        begins = np.flatnonzero(np.diff(of, prepend=-1))
-        for first, behind in zip(begins.tolist(), [*begins[1:].tolist(), of.size], strict=True):
-            at = slice(first, min(behind, step_s.size))
-            if sound[at].all() and step_s[at].sum() >= _WHOLE * _WINDOW_S:
-                apart_en_m = east_north_m(place[[first]], place[[at.stop]])[0]
-                apart_m = float(np.hypot(*apart_en_m))
-                noise_m = float(np.hypot(sigma[first], sigma[at.stop]))
-                legs_m = _legs_m(time_s[first : at.stop + 1], place[first : at.stop + 1])
-                name, way_m, by_speed_m = rows["track"][first], min(float(step_m[at].sum()), legs_m), float(stated_m[at].sum())
-                offset_m, margin_m = _OFFSET_MPS * _WINDOW_S, _OFFSET_MPS * _WINDOW_S + _DEVIATIONS * noise_m
-                if math.isfinite(by_speed_m):
-                    longer, shorter = apart_m > _LONGER * by_speed_m + margin_m, way_m < _SHORTER * by_speed_m - offset_m
-                    self._longer.count(name, false=longer, lengths_m=(apart_m, by_speed_m))
-                    self._shorter.count(name, false=shorter, lengths_m=(way_m, by_speed_m))
-                    whither_m = stated_en_m[at].sum(axis=0)
-                else:
-                    # Where nothing says how fast, the way is that of the positions, and its direction the stated one.
-                    by_speed_m = way_m
-                    whither_m = way_m * towards_s[at].sum(axis=0) / step_s[at].sum()
-                aside_m = float(np.hypot(*(apart_en_m - whither_m)))
-                if math.isfinite(aside_m):
-                    beyond_m = aside_m - _ASIDE * by_speed_m - margin_m
-                    gross = aside_m > _GROSS * by_speed_m + margin_m and beyond_m > _GROSS_M
-                    self._aside.count(name, false=beyond_m > 0.0, lengths_m=(aside_m, by_speed_m), gross=gross, beyond_m=beyond_m)
+        ways = _Ways(rows, _LONGEST_STEP_S)
+        speed = rows["_speed"].to_numpy()
+        stated_m = 0.5 * (speed[:-1] + speed[1:]) * ways.step_s
+        for at in _windows(rows, rows.height - open_window, ways.sound & np.isfinite(stated_m), ways.step_s):
+            name, by_speed_m = rows["track"][at.start], float(stated_m[at].sum())
+            offset_m, margin_m = ways.margins_m(at)
+            longer = ways.apart_m(at) > _LONGER * by_speed_m + margin_m
+            self._longer.count(name, false=longer, lengths_m=(ways.apart_m(at), by_speed_m))
+            way_m = ways.way_m(at)
+            self._shorter.count(name, false=way_m < _SHORTER * by_speed_m - offset_m, lengths_m=(way_m, by_speed_m))
 
     def scatter(self) -> Scatter | None:
         """How far positions scatter along their way, on the track that does so most; None where no track has enough steps."""
@@ -196,14 +169,147 @@ class Speeds:
                     f"The positions travel {word} than the recording's own speeds say {where} (at worst {test.worst[0]:.0f} m for "
                     f"{test.worst[1]:.0f} m): the positions are false, or they or the speeds are in another unit than they are read in"
                 )
-        if not doubts and (where := self._aside.of()) is not None:
+        aside = self._directions.after_all()
+        if not doubts and (where := aside.of()) is not None:
             doubts.append(
                 f"The positions end elsewhere than the recording's own speeds and tracks lead {where} (at worst "
-                f"{self._aside.worst[0]:.0f} m aside on a way of {self._aside.worst[1]:.0f} m): the positions are led off, or a column, "
+                f"{aside.worst[0]:.0f} m aside on a way of {aside.worst[1]:.0f} m): the positions are led off, or a column, "
                 f"such as that of the track, is not what it is read as "
                 f"({declare(f'ground_track_rad={NO_COLUMN}')}, to leave the track out)"
             )
         return doubts
+
+
+class _Ways:
+    """Steps between successive rows, and the ways of positions over windows of them."""
+
+    def __init__(self, rows: pl.DataFrame, longest_s: NDArray[np.float64] | float) -> None:
+        self.time_s = (rows["time_ns"] - rows["time_ns"][0]).to_numpy() * 1e-9
+        self.place, self._sigma = rows.select("est_lat_rad", "est_lon_rad").to_numpy(), rows["_sigma"].to_numpy()
+        self.step_s, self.step_m = np.diff(self.time_s), np.hypot(*east_north_m(self.place[:-1], self.place[1:]).T)
+        track, plausible = rows["track"].rle_id().to_numpy(), rows["_plausible"].to_numpy()
+        self.sound = plausible[1:] & plausible[:-1] & (track[1:] == track[:-1])
+        self.sound &= np.isfinite(self.step_m) & (self.step_s > 0) & (self.step_s <= longest_s)
+
+    def apart_en_m(self, at: slice) -> NDArray[np.float64]:
+        """From the begin of a window to its end."""
+        apart: NDArray[np.float64] = east_north_m(self.place[[at.start]], self.place[[at.stop]])[0]
+        return apart
+
+    def apart_m(self, at: slice) -> float:
+        """The same as a length."""
+        return float(np.hypot(*self.apart_en_m(at)))
+
+    def way_m(self, at: slice) -> float:
+        """The way of the positions: over steps or over legs, what is shorter."""
+        legs_m = _legs_m(self.time_s[at.start : at.stop + 1], self.place[at.start : at.stop + 1])
+        return min(float(self.step_m[at].sum()), legs_m)
+
+    def margins_m(self, at: slice) -> tuple[float, float]:
+        """What a difference of speeds explains, and with it the noise of both ends."""
+        offset_m = _OFFSET_MPS * _WINDOW_S
+        return offset_m, offset_m + _DEVIATIONS * float(np.hypot(self._sigma[at.start], self._sigma[at.stop]))
+
+
+def _windows(rows: pl.DataFrame, end: int, sound: NDArray[np.bool_], step_s: NDArray[np.float64]) -> Iterator[slice]:
+    """Steps of each window before a row that are all sound and fill it; a step belongs to the window in which it begins."""
+    of = rows.select(pl.struct("track", "_window").rle_id())["track"].to_numpy()[:end]
+    if of.size == 0:
+        return
+    begins = np.flatnonzero(np.diff(of.astype(np.int64), prepend=-1))
+    for first, behind in zip(begins.tolist(), [*begins[1:].tolist(), of.size], strict=True):
+        at = slice(first, min(behind, step_s.size))
+        if sound[at].all() and step_s[at].sum() >= _WHOLE * _WINDOW_S:
+            yield at
+
+
+class _Directions:
+    """Whether positions end where speed and track lead, minute by minute. Between two statements both change evenly.
+
+    A step of a steady turn is a chord in the mean direction of its ends; statements so far apart that the aircraft may have turned by half
+    a turn say nothing. Where no speed is stated the way is that of the positions.
+    """
+
+    def __init__(self) -> None:
+        self._aside = _Test(expected=0.0)
+        self._waiting: pl.DataFrame | None = None
+
+    def see(self, rows: pl.DataFrame) -> None:
+        """The next rows, with the speeds and tracks that they state themselves."""
+        rows = rows.with_columns(_window=pl.col("time_ns") // _WINDOW_NS, _judged=pl.lit(value=False))
+        rows = rows if self._waiting is None else pl.concat([self._waiting, rows])
+        window = rows.select(pl.struct("track", "_window").rle_id())["track"].cast(pl.Int64).to_numpy()
+        # What is stated up to a minute later and before belongs to a window.
+        own = (rows["track"] == rows["track"][-1]).to_numpy()
+        done = ~own | (window < window[-1] - 1)
+        self._judge(rows, done & ~rows["_judged"].to_numpy())
+        kept = own & (window >= window[-1] - 2)
+        self._waiting = rows.with_columns(_judged=pl.Series(done)).filter(pl.Series(kept))
+
+    def after_all(self) -> _Test:
+        """The test after the last rows."""
+        if self._waiting is not None:
+            self._judge(self._waiting, ~self._waiting["_judged"].to_numpy())
+            self._waiting = None
+        return self._aside
+
+    def _judge(self, rows: pl.DataFrame, which: NDArray[np.bool_]) -> None:
+        if not which.any():
+            return
+        speed, whither = _between_statements(rows)
+        plain = _Ways(rows, _WINDOW_S)
+        own_mps = np.where(np.isfinite(speed[:-1]), 0.5 * (speed[:-1] + speed[1:]), plain.step_m / np.maximum(plain.step_s, 1e-9))
+        turn = _wrapped(np.diff(whither))
+        mean, half = whither[:-1] + 0.5 * turn, 0.5 * turn
+        chord = np.sinc(half / np.pi)[:, None] * np.column_stack([np.sin(mean), np.cos(mean)])
+        stated_m = 0.5 * (speed[:-1] + speed[1:]) * plain.step_s
+        stated_en_m, towards_s = stated_m[:, None] * chord, plain.step_s[:, None] * chord
+        sound = plain.sound & (plain.step_s <= half_turn_s(own_mps)) & np.isfinite(mean)
+        for at in _windows(rows, rows.height, sound, plain.step_s):
+            if not which[at.start]:
+                continue
+            way_m, by_speed_m = plain.way_m(at), float(stated_m[at].sum())
+            whither_m = stated_en_m[at].sum(axis=0)
+            if not math.isfinite(by_speed_m):
+                by_speed_m, whither_m = way_m, way_m * towards_s[at].sum(axis=0) / plain.step_s[at].sum()
+            aside_m = float(np.hypot(*(plain.apart_en_m(at) - whither_m)))
+            _, margin_m = plain.margins_m(at)
+            beyond_m = aside_m - _ASIDE * by_speed_m - margin_m
+            gross = aside_m > _GROSS * by_speed_m + margin_m and beyond_m > _GROSS_M
+            name = rows["track"][at.start]
+            self._aside.count(name, false=beyond_m > 0.0, lengths_m=(aside_m, by_speed_m), gross=gross, beyond_m=beyond_m)
+
+
+def _wrapped(angle: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.arctan2(np.sin(angle), np.cos(angle))
+
+
+def _between_statements(rows: pl.DataFrame) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Speed and track at every row; NaN before the first statement of a track, behind the last, and between two that are too far apart."""
+    time_s = (rows["time_ns"] - rows["time_ns"][0]).to_numpy() * 1e-9
+    speed, whither = rows["_speed"].to_numpy().copy(), rows["_whither"].to_numpy().copy()
+    begin = 0
+    for length in rows["track"].rle().struct.field("len").to_list():
+        own = slice(begin, begin + length)
+        speed[own] = _even(time_s[own], speed[own], None)
+        whither[own] = _even(time_s[own], whither[own], speed[own])
+        begin += length
+    return speed, whither
+
+
+def _even(time_s: NDArray[np.float64], stated: NDArray[np.float64], speed: NDArray[np.float64] | None) -> NDArray[np.float64]:
+    """Evenly between statements of a speed, or of a direction beside a speed."""
+    known = np.flatnonzero(np.isfinite(stated))
+    if known.size in {0, stated.size}:
+        return stated
+    at, values = time_s[known], stated[known]
+    values = values if speed is None else np.cumsum(np.concatenate([values[:1], _wrapped(np.diff(values))]))
+    even = np.interp(time_s, at, values, left=math.nan, right=math.nan)
+    after = np.searchsorted(at, time_s, side="left").clip(0, at.size - 1)
+    before = (np.searchsorted(at, time_s, side="right") - 1).clip(0, at.size - 1)
+    # Where no speed is known ten seconds are not long.
+    longest_s = np.nan_to_num(np.minimum(half_turn_s(even if speed is None else speed), _WINDOW_S), nan=_LONGEST_STEP_S)
+    return np.where(at[after] - at[before] <= longest_s, even, math.nan)
 
 
 class _Steps:
@@ -239,25 +345,24 @@ class _Steps:
             begin += length
 
     def largest(self) -> Scatter | None:
-        found = None
+        most = None
         for name, counts in self._counts.items():
             if (n := int(counts.sum())) < _LEAST_STEPS:
                 continue
             at = int(np.searchsorted(np.cumsum(counts), 0.95 * n))
             # Both ends of a step scatter.
             along_m = float(_SCATTER_BINS_M[at - 1] / math.sqrt(2.0)) if at else 0.0
-            if found is None or along_m > found.along_m:
-                found = Scatter(name, along_m, n)
-        return found
+            if most is None or along_m > most.along_m:
+                most = Scatter(name, along_m, n)
+        return most
 
 
-_CARRIED = ("_speed", "_whither")
-"""Columns whose last value counts for as long as a step may be; when it was stated stands beside it."""
-
-
-def _carried(name: str) -> pl.Expr:
-    known, stated_ns = pl.col(name).fill_nan(None).forward_fill().over("track"), pl.col(f"{name}_ns").forward_fill().over("track")
-    return pl.when(pl.col("time_ns") - stated_ns <= _LONGEST_STEP_S * 1e9).then(known).fill_null(float("nan")).alias(name)
+_CARRIED = (
+    pl.when(pl.col("time_ns") - pl.col("_speed_ns").forward_fill().over("track") <= _LONGEST_STEP_S * 1e9)
+    .then(pl.col("_speed").fill_nan(None).forward_fill().over("track"))
+    .fill_null(float("nan"))
+)
+"""The last speed, for as long as a step may be."""
 
 
 def _legs_m(time_s: NDArray[np.float64], place: NDArray[np.float64]) -> float:

@@ -15,7 +15,6 @@ from navbound.records.truth import TruthDoubts
 if TYPE_CHECKING:
     from navbound.records.procedure import BesideProcedure, ProcedureFlown
     from navbound.records.run import CovarianceOrigin, CrossTrack, EventSummary, InputFile, Rejection, Waypoint
-    from navbound.records.scatter import Scatter
     from navbound.storage.frames import Frames
 
 LEFT_OUT = {"track": pl.String, "time_ns": pl.Int64}
@@ -24,6 +23,26 @@ LEFT_OUT = {"track": pl.String, "time_ns": pl.Int64}
 Operation = Literal["en-route", "approach", "ground"]
 """What kind of operation is flown: nobody works it out from the size of a requirement. ``ground``: landing roll and taxiing, where
 requirements are metres and what is about flight says nothing."""
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """How far recorded positions scatter along their way, on the track that does so most.
+
+    Attributes
+    ----------
+    track : str
+        Which.
+    along_m : float
+        The way from one position to the next less that of the track's own speeds: what 95 % of the steps leave beside turns, rounding
+        and the covariances, divided by the root of two, as both ends scatter. [m]
+    n : int
+        Steps that were compared.
+    """
+
+    track: str
+    along_m: float
+    n: int
 
 
 @dataclass(frozen=True)

@@ -93,7 +93,7 @@ const CAUGHT_UP: f64 = 0.95;
 /// A position that stood, and the way by the reported speeds since. One that a stale hold is followed by is as late as the way that it lacks,
 /// until it has caught up: between a held position and a true one a source may interpolate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Held {
+pub struct Stood {
     /// When it was new.
     pub time: GpsTime,
     /// Latitude \[rad\].
@@ -102,33 +102,36 @@ pub struct Held {
     pub lon_rad: f64,
     /// The way since \[m\].
     pub way_m: f64,
+    /// How much further than by the reported speeds the steps up to it led: under stamps that clump a position is early, stands, and the next is no
+    /// late one \[m\].
+    pub early_m: f64,
     /// It stood until it was stale.
     pub stale: bool,
 }
 
-impl Held {
-    const fn at(report: &Report) -> Self {
-        Self { time: report.time, lat_rad: report.lat_rad, lon_rad: report.lon_rad, way_m: 0.0, stale: false }
+impl Stood {
+    const fn at(report: &Report, early_m: f64) -> Self {
+        Self { time: report.time, lat_rad: report.lat_rad, lon_rad: report.lon_rad, way_m: 0.0, early_m, stale: false }
     }
 
     /// After the next report, and by how much its position is late after a hold \[s\]; 0 where it is not.
     fn after(before: Option<Self>, report: &Report, unchanged: bool, passed_s: f64, limits: &Limits) -> (Self, f64) {
-        let Some(before) = before.filter(|held| within(report.time, held.time, RETURNS_S)) else { return (Self::at(report), 0.0) };
+        let Some(before) = before.filter(|stood| within(report.time, stood.time, RETURNS_S)) else { return (Self::at(report, 0.0), 0.0) };
         let way_m = before.way_m + if report.speed_mps > STANDS_MPS { report.speed_mps * passed_s } else { 0.0 };
         let stale = before.stale || (unchanged && !within(report.time, before.time, limits.stale_after_s));
-        let held = Self { way_m, stale, ..before };
+        let stood = Self { way_m, stale, ..before };
         if unchanged {
-            return (held, 0.0);
+            return (stood, 0.0);
         }
         let [east, north] = east_north_m([before.lat_rad, before.lon_rad], [report.lat_rad, report.lon_rad]);
-        let elapsed_s = report.time.seconds_since(before.time);
-        let made_good_m = hypot(east, north) + limits.noise_m;
-        let late_s = (CAUGHT_UP * chord_share(report.speed_mps, elapsed_s) * way_m - made_good_m) / report.speed_mps;
+        let (elapsed_s, made_good_m) = (report.time.seconds_since(before.time), hypot(east, north));
+        let due_m = CAUGHT_UP * chord_share(report.speed_mps, elapsed_s) * way_m - before.early_m;
+        let late_s = (due_m - made_good_m - limits.noise_m) / report.speed_mps;
         if stale && report.speed_mps > limits.moving_mps && late_s > limits.stale_after_s {
-            (held, late_s)
-        } else {
-            (Self::at(report), 0.0)
+            return (stood, late_s);
         }
+        // Speeds that are too small do not add up to an early position. f64::max prefers a number to a NaN.
+        (Self::at(report, (before.early_m + made_good_m - (2.0 - CAUGHT_UP) * way_m).max(0.0)), 0.0)
     }
 }
 
@@ -148,7 +151,7 @@ pub struct Gone {
     /// Way to brake on that was not flown.
     pub owed: Option<Owed>,
     /// The last position that was new, or that stood and is not caught up with.
-    pub held: Option<Held>,
+    pub stood: Option<Stood>,
     /// By how much the position is late after a hold \[s\].
     pub late_s: f64,
     /// The position has changed.
@@ -160,7 +163,7 @@ pub struct Gone {
 impl Default for Gone {
     fn default() -> Self {
         let (way_m, stood_s, crawled_s, late_s) = (0.0, 0.0, 0.0, 0.0);
-        Self { seen: None, way_m, stood_s, braked_mps: f64::NAN, fell: None, owed: None, held: None, late_s, moved: false, crawled_s }
+        Self { seen: None, way_m, stood_s, braked_mps: f64::NAN, fell: None, owed: None, stood: None, late_s, moved: false, crawled_s }
     }
 }
 
@@ -178,8 +181,8 @@ impl Gone {
         let (way_m, stood_s) = if unchanged { (self.way_m, self.stood_s) } else { (0.0, 0.0) };
         self.way_m = way_m + if unchanged && speed_mps > STANDS_MPS { speed_mps * passed_s } else { 0.0 };
         self.stood_s = stood_s + if unchanged && speed_mps <= STANDS_MPS { passed_s } else { 0.0 };
-        let (held, late_s) = Held::after(self.held, report, unchanged && self.seen.is_some(), passed_s, limits);
-        (self.held, self.late_s) = (Some(held), late_s);
+        let (stood, late_s) = Stood::after(self.stood, report, unchanged && self.seen.is_some(), passed_s, limits);
+        (self.stood, self.late_s) = (Some(stood), late_s);
         let left_mps = self.braked_mps - BRAKING_MPS2 * elapsed_s;
         // A position that does not change leaves no way to brake on, however long that took.
         let braking_m = (self.braked_mps * self.braked_mps - speed_mps * speed_mps) / (2.0 * BRAKING_MPS2);

@@ -18,7 +18,7 @@ const PLACE_S: f64 = 1.0;
 /// Half a turn below which the ends are as far apart as the way is long, to 1 % \[rad\]. Derived: 1 - w^2 / 6.
 const WHOLE_RAD: f64 = 0.25;
 /// Turning of an aircraft at 60 degrees of bank, g tan 60 \[m/s2\]. Provenance: ours.
-const TURNING_MPS2: f64 = 17.0;
+pub const TURNING_MPS2: f64 = 17.0;
 /// The straight line over a longer silence is not the way \[s\].
 const SILENCE_S: f64 = 60.0;
 /// Places that are remembered: the slowest aircraft that moves (15 m/s) needs 27 s for the shortest way (400 m). With larger limits the

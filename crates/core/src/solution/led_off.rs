@@ -91,7 +91,8 @@ const NOTHING: Arc = Arc { seen: None, track: 0, diverges: true, less_phase_m: f
 pub struct Comparisons {
     /// Epochs that were compared: enough satellites with an unbroken phase, and residuals that fit.
     pub n_compared: usize,
-    /// How often a shift that stood was dropped, since hardly any phase went on: whether it went on nothing shows.
+    /// How often hardly any phase went on while a shift stood. It stands until codes are compared again, and from then on only what has changed
+    /// since is seen.
     pub n_dropped: usize,
 }
 
@@ -103,6 +104,8 @@ pub struct CodesAgainstPhases {
     since: Option<GpsTime>,
     /// Where the codes lead the position, as long as they do.
     standing: Option<Vector3<f64>>,
+    /// Since that was seen hardly any phase went on: the references may have the lead, or none.
+    unknown: bool,
     /// What the references have of the noise of shifts before \[m²\].
     inherited: Matrix3<f64>,
     longest_gap_s: f64,
@@ -119,6 +122,7 @@ impl CodesAgainstPhases {
             arcs: [NOTHING; SLOTS],
             since: None,
             standing: None,
+            unknown: false,
             inherited: Matrix3::zeros(),
             longest_gap_s,
             comparisons: Comparisons { n_compared: 0, n_dropped: 0 },
@@ -148,9 +152,11 @@ impl CodesAgainstPhases {
         let age_s = self.since.map_or(f64::INFINITY, |since| time.seconds_since(since));
         let kept = self.arcs.iter().filter(|a| a.reference_m.is_finite() && a.seen.is_some_and(|seen| self.unbroken(time, seen)));
         if kept.count() < COMMON || !(age_s >= 0.0) {
-            self.comparisons.n_dropped += usize::from(self.standing.take().is_some());
+            // A lead goes on until phases show that it does not.
+            self.comparisons.n_dropped += usize::from(self.standing.is_some() && !self.unknown);
+            self.unknown = self.standing.is_some();
             self.renew(time);
-            return None;
+            return self.standing;
         }
         let mut rows = [Row::default(); MOST_RANGES];
         let mut seen = [None; MOST_RANGES];
@@ -169,10 +175,12 @@ impl CodesAgainstPhases {
             // What stands goes on until the codes have moved back, and not because references become less certain.
             let inherited = if self.standing.is_some() { Matrix3::zeros() } else { self.inherited };
             self.standing = beyond(&fit.shift, &(fit.covariance + inherited)).then_some(fit.shift);
+            self.unknown = false;
             self.join(time, &fit, seen.iter().take(n).flatten());
         }
         if age_s >= RENEWED_S {
-            let (led, inherited) = (self.standing.unwrap_or_default(), self.inherited);
+            // Of references of unknown codes nothing says where they were without a lead.
+            let (led, inherited) = (self.standing.filter(|_| !self.unknown).unwrap_or_default(), self.inherited);
             self.renew(time);
             self.correct(&led, seen.iter().take(n).flatten());
             if self.standing.is_some() {

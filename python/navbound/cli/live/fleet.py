@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import sys
 import time
+from collections import Counter
 from dataclasses import asdict, dataclass
+from json import loads as json_of
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -126,9 +128,13 @@ def fleet(
 
     with _Begun(source, settings, to, lanes) as transport, Crew(to, workers, report=took, say=say) as crew:
         name = transport.name
+        # From here on the lanes of a broker are heard.
+        for lane in range(lanes):
+            transport.shown(lane)
         with _Screen(to, port if display or open_page else None, json=json, opened=open_page) as screen:
             _feed(source, settings, _Fed(to, lanes, spool, speed), stop=stop, look=crew.look)
             crew.finish(stop)
+            _say_refused(transport)
             screen.hold(stop)
     _sum(None, counted[0], name, json=json)
 
@@ -254,6 +260,17 @@ class _Screen:
             say("the data have ended; the page stays open until Ctrl-C")
             while not stop():
                 time.sleep(0.1)
+
+
+def _say_refused(transport: Transport) -> None:
+    """What was refused of the lines, by reason; what the lanes showed last counts."""
+    n: Counter[str] = Counter()
+    for lane in range(transport.n_lanes):
+        shown = transport.shown(lane)
+        counters = json_of(shown[-1][0]).get("counters", {}) if shown else {}
+        n.update({name.removeprefix("refused_"): int(each) for name, each in counters.items() if name.startswith("refused_") and each})
+    if n:
+        say(f"refused of what was fed: {', '.join(f'{count} {reason}' for reason, count in sorted(n.items()))}")
 
 
 def _sum(n_epochs: int | None, n_transitions: int, name: str, *, json: bool) -> None:

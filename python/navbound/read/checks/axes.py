@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
-from navbound.read.checks.places import east_north_m
+from navbound.read.checks.places import east_north_m, half_turn_s
 from navbound.read.checks.plausible import plausible_rows
 
 if TYPE_CHECKING:
@@ -44,13 +44,18 @@ class Axes:
         rows = rows if self._last is None else pl.concat([self._last, rows])
         self._last = rows.tail(1)
         place = rows.select("est_lat_rad", "est_lon_rad").to_numpy()
-        reported = rows["ground_track_rad"].fill_null(np.nan).to_numpy()[1:]
+        at_rows = rows["ground_track_rad"].fill_null(np.nan).to_numpy()
+        turn = np.diff(at_rows)
+        reported = np.where(np.isfinite(turn), at_rows[:-1] + 0.5 * np.arctan2(np.sin(turn), np.cos(turn)), at_rows[1:])
         track = rows["track"].rle_id().to_numpy()
         same = (track[1:] == track[:-1]) & np.isfinite(reported)
         move, exchanged = east_north_m(place[:-1], place[1:]), east_north_m(place[:-1, ::-1], place[1:, ::-1])
         plausible = rows["_plausible"].to_numpy()
         same &= plausible[1:] & plausible[:-1]
-        same &= (np.hypot(*move.T) > _LEAST_M) & (np.hypot(*exchanged.T) > _LEAST_M)
+        move_m, step_s = np.hypot(*move.T), np.diff((rows["time_ns"] - rows["time_ns"][0]).to_numpy() * 1e-9)
+        same &= (move_m > _LEAST_M) & (np.hypot(*exchanged.T) > _LEAST_M)
+        # A step of a turn is a chord in the mean direction of its ends; over half a turn it is in any.
+        same &= step_s <= half_turn_s(move_m / np.maximum(step_s, 1e-9))
         agrees, agrees_exchanged = _agreeing(move, reported), _agreeing(exchanged, reported)
         for name, at in _spans(rows["track"]):
             steps = slice(at.start, min(at.stop, same.size))

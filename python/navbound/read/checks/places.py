@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import polars as pl
 
+from navbound import _core
 from navbound.units import EARTH_RADIUS_M
 
 if TYPE_CHECKING:
@@ -32,6 +33,11 @@ def east_north_m(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArra
     east = 2.0 * EARTH_RADIUS_M * np.cos(start[:, 0]) * np.sin(0.5 * (turned - 2.0 * np.pi * np.round(turned / (2.0 * np.pi))))
     north = EARTH_RADIUS_M * (end[:, 0] - start[:, 0])
     return np.column_stack(np.broadcast_arrays(east, north))
+
+
+def half_turn_s(speed_mps: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Time below which no aircraft turns by half a turn, at 60 degrees of bank: the direction between two statements is known. [s]."""
+    return np.pi * np.abs(speed_mps) / _core.TURNING_MPS2
 
 
 _BESIDE_NOTHING_RAD = 0.02

@@ -63,9 +63,8 @@ class Rejections:
         return ": " + "; ".join(each) if each else ""
 
     def without_position(self) -> str:
-        """Why a file without a single position is refused: rows that hold one and are left out are counted."""
-        held = "that may be used" if self.records else "with a time, a latitude and a longitude"
-        return f"no row {held}{self.in_words()}"
+        """Why a file without a single position is refused: rows that have one and are left out are counted."""
+        return f"no row that may be used{self.in_words()}" if self.records else "no row holds a time, a latitude and a longitude"
 
     def refuse_if_too_many(self, n_rows: int) -> None:
         """Refuse the file when more than the stated share of its rows is malformed.

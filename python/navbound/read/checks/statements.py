@@ -200,7 +200,8 @@ KINDS: tuple[Kind, ...] = (
             "dead_reckoning is_dead_reckoning deadreckoning gps_denied gnss_denied gps_lost gnss_lost no_gps no_gnss no_fix fix_lost "
             "estimated "
             "is_estimated predicted is_predicted extrapolated is_extrapolated interpolated is_interpolated propagated coasted coasting "
-            "is_coasting simulated is_simulated inertial_only ins_only coast dr is_dr suspect suspected is_suspect held is_held imputed "
+            "is_coasting posstale pos_stale position_stale is_stale psr_only ssr_only cst "
+            "simulated is_simulated inertial_only ins_only coast dr is_dr suspect suspected is_suspect held is_held imputed "
             "is_imputed"
         ),
         _YES,
@@ -228,6 +229,7 @@ KINDS: tuple[Kind, ...] = (
         fine_begins=own_positions.OWN_BEGINS,
     ),
     BY_OTHERS,
+    Kind("invalid", own_positions.UPDATE_TYPE, own_positions.UPDATE_FOREIGN, own_positions.UPDATE_OWN, other_against=True),
     NUC,
     # The rule of solved positions; receivers write 99.99 where they know none.
     Kind("invalid", _words("hdop pdop gdop vdop dop"), frozenset(), frozenset(), above=_core.MOST_DILUTION),
@@ -464,7 +466,8 @@ def stated(kind: Kind, raw: pl.Series) -> Stated:
 _ALARM = (
     r"\b(unable|unreliable|invalid|lost|fail|fails|failed|failure|fault|faulty|alarm|alert|warning|misleading|spoof|spoofed|spoofing|jam|jammed|jamming|"
     r"degraded|unhealthy|unsafe|downgrade|downgraded|unavail|unavailable|disagree|inop|loss|doubtful|dead reckoning|outage|exceeded|"
-    r"accur low|accuracy low|low accuracy|irs only|irs nav only|ins only|inertial only|disconnected|extrapolated|simulated data|"
+    r"accur low|accuracy low|low accuracy|"
+    r"mlat\d*|multilat\w*|tis b|tisb|irs only|irs nav only|ins only|inertial only|disconnected|extrapolated|simulated data|"
     r"simulated position)\b"
 )
 _STATE_ALARM = _ALARM.replace("(unable", "(simulated|simulation|simulator|mocked|unable")

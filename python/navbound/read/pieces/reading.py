@@ -288,7 +288,7 @@ def _second_pass(first: _FirstPass, every: int) -> PiecedReading:
         rejections=first.rejections,
         n_rows=first.n_rows,
         unread=values.unread,
-        position_doubts=values.position_doubts,
+        position_doubts=values.doubts(),
         whole_seconds=values.whole_seconds and first.beside is None,
     )
 

@@ -16,6 +16,7 @@ from navbound.read.quantities import (
     FLIGHTRADAR24,
     LEVEL_QUANTITIES,
     OPENSKY_STATES,
+    OPENSKY_VELOCITY,
     POSITION_TIME_NAMES,
     QUANTITIES,
     STATED_QUANTITIES,
@@ -217,7 +218,9 @@ def assign(
 
 def _of_layouts(names: list[str]) -> dict[str, Column]:
     """What the columns are where a table has all names of a program that writes them in units of its own."""
-    layouts = [layout for layout in (OPENSKY_STATES, FLIGHTRADAR24) if {name for name, _ in layout.values()} <= set(names)]
+    layouts = [
+        layout for layout in (OPENSKY_VELOCITY, OPENSKY_STATES, FLIGHTRADAR24) if {name for name, _ in layout.values()} <= set(names)
+    ]
     return {quantity: Column(quantity, name, unit) for layout in layouts for quantity, (name, unit) in layout.items()}
 
 

@@ -142,7 +142,7 @@ def _epochs(source: Source, content: Table, mapping: Assignment, required: Seque
     _not_empty(source, out, rejections)
     lost = pl.concat([without, left_out(contradicting)])
     of_file = (source.record(content.n_rows), rejections.records, mapping.unused, values.notes, values.described(), lost)
-    return Reading(out.drop(LINE), *of_file, unread=values.unread, position_doubts=values.position_doubts)
+    return Reading(out.drop(LINE), *of_file, unread=values.unread, position_doubts=values.doubts())
 
 
 _STATES_SATELLITES = re.compile(r"^%.*\bns\b", re.MULTILINE)

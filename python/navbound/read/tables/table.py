@@ -258,11 +258,11 @@ def rows_of(path: Path, layout: Layout, lines: pl.DataFrame) -> Rows:
 def _names(path: Path, header: str, separator: str) -> list[str]:
     names = [n.strip().strip('"') for n in header.split(separator)]
     require_few(path, len(names))
-    # Unnamed columns (a data frame's index, a separator at the end of the line) may be many: nothing can ask for them.
     repeated = [name for name, n in Counter(names).items() if n > 1 and name]
     if repeated:
         raise FormatError(path, f"the column “{repeated[0]}” is named twice", 1)
-    return names
+    # Columns without a name (a data frame's index, what a person wrote beside, the separator at the end of a line) are seen by their place.
+    return [name or ("" if f"column {k}" in names else f"column {k}") for k, name in enumerate(names, 1)]
 
 
 def _parquet(source: Source) -> Table:

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 _BAD, _EXAMPLE = "__bad", "__example"
 _RAW = "__raw "
 
+_LATE = "later than its row"
 _AGE, _OLDEST_S = "__age_s", 1e6
 """Column of the age that a row states of its position, and the largest that dates it. [s] Provenance: ours."""
 _AHEAD_NS = 1_000_000_000
@@ -93,6 +94,7 @@ class Values:
         self._largest = dict.fromkeys(POSITION, 0.0)
         self._unit = self._unit_dated = ""
         self._n_ground: dict[str, int] = {}
+        self._n_dated = self._n_undated = 0
         self._n_heights = self._n_feet = self._n_metres = 0
 
     def take(self, frame: pl.DataFrame) -> pl.DataFrame:
@@ -300,7 +302,7 @@ class Values:
             try:
                 self._unit_dated = self._understood([self._dated], self._facts_dated)
             except FormatError as e:
-                self.notes.append(f"{name}: “{self._dated.name}” is not used: {e.message}")
+                self.position_doubts.append(f"{name}: “{self._dated.name}” says when positions were valid and is not read: {e.message}")
                 self._dated = None
         self._further.understand(self._dtypes)
         # The numbers of all rows are needed no more.
@@ -364,18 +366,27 @@ class Values:
         name = self._dated.name
         valid, reason = converted(raw, [self._dated], self._unit_dated)
         late = (valid > out["time_ns"] + _AHEAD_NS).fill_null(value=False)
-        reason = pl.select(pl.when(late).then(pl.lit("later than its row")).otherwise(reason)).to_series()
+        reason = pl.select(pl.when(late).then(pl.lit(_LATE)).otherwise(reason)).to_series()
         for text in reason.drop_nulls().filter(reason.drop_nulls() != "empty").unique(maintain_order=True):
             at = (reason == text).fill_null(value=False)
             # Without it the row's own time serves: that makes no row malformed.
             words = f"{name}: {text}; row used without it"
             self.tally.add(DATED, words, int(at.sum()), out.filter(at)[LINE][0], str(raw.filter(at)[name][0]), kind="quiet")
+            self._n_undated += 0 if text == _LATE else int(at.sum())
+        self._n_dated += int(valid.count())
         out = out.with_columns(pl.select(pl.when(reason.is_null()).then(valid)).to_series().alias(POSITION_TIME))
         # One of the two clocks is wrong, and nothing says which.
         ahead_s = (valid - out["time_ns"]).cast(pl.Float64) * 1e-9
         of_row = pl.format("{} s later than its row", ahead_s.round(1))
         wrong = pl.select(pl.when(ahead_s > statements.STALE_AFTER_S).then(of_row)).to_series()
         return stated.with_statements(out, [(name, "invalid", statements.Stated(wrong, []))]) if wrong.count() else out
+
+    def doubts(self) -> list[str]:
+        """Why nothing can be shown of the positions, after the last rows."""
+        if self._dated is None or self._n_undated <= self._n_dated:
+            return self.position_doubts
+        unread = f"{self._n_undated} of its {self._n_undated + self._n_dated} fields cannot be read as a time"
+        return [*self.position_doubts, f"{self._path.name}: “{self._dated.name}” says when positions were valid, and {unread}"]
 
     def described(self) -> dict[str, str]:
         """Quantity to the column that it was read from and its unit."""

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-    from navbound.records.scatter import Scatter
+    from navbound.records.material import Scatter
     from navbound.run.pieces.truth import PiecedTruth
     from navbound.run.pieces.ways import Way
 

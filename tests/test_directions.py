@@ -1,0 +1,66 @@
+"""Where speed and track lead between statements: what an aircraft may have flown, and what it cannot."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from test_who_and_when import DEG_PER_M, SPEED_MPS, analyzed, rows
+
+WORDS = "positions end elsewhere"
+
+
+def doubted(tmp_path: Path, table: list[dict[str, Any]]) -> bool:
+    return any(WORDS in each for each in analyzed(tmp_path, table).summary.verdict.position_doubts)
+
+
+def turning(speed_mps: float, rate_deg_s: float, every_s: int, stated_s: int, hold_s: float) -> list[dict[str, Any]]:
+    """Straight for a while, round, and so on; a position each so many seconds, speed and track each so many."""
+    n_s = 1500
+    table, east, north, track_deg = list[dict[str, Any]](), 0.0, 0.0, 30.0
+    leg_s = 180.0 / rate_deg_s
+    for k in range(n_s):
+        if k % every_s == 0:
+            stated = {"ground_speed_mps": speed_mps, "track_deg": track_deg % 360.0} if k % stated_s == 0 else {}
+            place = {"lat_deg": 48.0 + north * DEG_PER_M, "lon_deg": 2.0 + east * DEG_PER_M / math.cos(math.radians(48.0))}
+            table += [{"time_s": 1_700_000_000 + k, "nac_p": 10, "ground_speed_mps": None, "track_deg": None} | place | stated]
+        for _ in range(10):
+            straight = hold_s > 0.0 and k % (leg_s + hold_s) < hold_s
+            track_deg += 0.0 if straight else 0.1 * rate_deg_s
+            east += 0.1 * speed_mps * math.sin(math.radians(track_deg))
+            north += 0.1 * speed_mps * math.cos(math.radians(track_deg))
+    return table
+
+
+@pytest.mark.parametrize(
+    "flight",
+    [
+        # A hold of a transport, statements each ten seconds between positions each second, and all in rows of 10 s.
+        (110.0, 3.0, 1, 10, 60.0),
+        (110.0, 3.0, 10, 10, 60.0),
+        (110.0, 3.0, 15, 15, 60.0),
+        # A glider in a thermal: circles of 24 s in rows of 4 s, and of 30 s, which say nothing.
+        (28.0, 15.0, 4, 4, 0.0),
+        (28.0, 15.0, 30, 30, 0.0),
+        # A fighter.
+        (200.0, 10.0, 1, 5, 0.0),
+    ],
+)
+def test_turns_between_statements_are_no_lead(tmp_path: Path, flight: tuple[float, float, int, int, float]) -> None:
+    doubts = analyzed(tmp_path, turning(*flight)).summary.verdict.position_doubts
+    assert not [each for each in doubts if WORDS in each or "direction of the reported track" in each]
+
+
+@pytest.mark.parametrize(("every_s", "stated_s"), [(15, 15), (20, 20), (40, 40), (1, 20), (5, 20)])
+def test_a_lead_aside_shows_between_rows_and_statements_that_are_far_apart(tmp_path: Path, every_s: int, stated_s: int) -> None:
+    def led(k: int) -> dict[str, Any]:
+        stated = {"ground_speed_mps": SPEED_MPS, "track_deg": 0.0} if k % stated_s == 0 else {"ground_speed_mps": None, "track_deg": None}
+        return stated | {"lon_deg": 2.0 + 60.0 * max(0, k - 600) * DEG_PER_M / 0.65}
+
+    table = [row | led(k) for k, row in enumerate(rows(2400)) if k % every_s == 0]
+    assert doubted(tmp_path, table)
+    straight = [row | {"lon_deg": 2.0} for row in table]
+    assert not doubted(tmp_path, straight)
