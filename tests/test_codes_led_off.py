@@ -50,8 +50,9 @@ def test_a_ramp_is_named_before_its_error_reaches_sixty_metres(tmp_path: Path) -
     first = int(np.argmax(led))
     assert FROM < first <= FROM + 60.0 / (0.3 * STEP_S)
     assert led[first:GAP].all()
-    # It begins anew, as at the begin of a file.
-    again = GAP + int(np.argmax(led[GAP:]))
+    # It stands until codes are compared again, and begins anew then, as at the begin of a file.
+    assert led[GAP]
+    again = GAP + 1 + int(np.argmax(led[GAP + 1 :]))
     assert GAP < again <= GAP + 60.0 / (0.3 * STEP_S)
     assert led[again:].all()
 

@@ -180,7 +180,6 @@ class Jobs:
             time.sleep(0.05)
 
     def _end(self, job: Job, status: int) -> None:
-        job.ended_s = time.time()
         printed = job.output()["stderr"].strip()
         last = printed.splitlines()[-1].removeprefix("navbound: ") if printed else ""
         if job.stop_requested_s is not None and status != 0:
@@ -191,6 +190,8 @@ class Jobs:
             job.state, job.words = "no_verdict", MEANINGS[NO_VERDICT]
         else:
             job.state, job.words = "failed", last or f"it ended with status {status}"
+        # The last thing: who sees that it has ended sees how, whatever thread that is.
+        job.ended_s = time.time()
 
 
 def _signal(job: Job, number: int) -> None:
