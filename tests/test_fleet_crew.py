@@ -12,6 +12,8 @@ import pytest
 
 from fleet_fixture import fed, made, reported
 from live_fixture import fleet, truth
+from navbound import _core
+from navbound.cli.live.fleet import alerts
 from navbound.errors import FormatError
 from navbound.live import journal
 from navbound.live.fleet import Worker, connect
@@ -80,6 +82,20 @@ def test_a_worker_that_is_killed_at_the_end_of_the_feed_is_followed_by_another(t
         crew.finish(lambda: False)
     assert any("worker 1 ended (-9)" in sentence for sentence in sentences)
     assert keys(name) == judged(tmp_path / "undisturbed")
+
+
+def test_alerts_of_a_fleet_that_is_judged_in_part_say_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    name = str(tmp_path / "fleet")
+    with made(name) as transport:
+        fed(transport, fleet(N, SECONDS, SEED))
+        Worker(transport).run(finishing=lambda: True)
+    alerts(name)
+    assert "not all is judged" not in capsys.readouterr().err
+    with made(name) as transport:
+        log = transport.came_in(1)
+        log.append(_core.live_input("heartbeat", 1, b""), log.end())
+    alerts(name)
+    assert "not all is judged: lanes 1 hold more" in capsys.readouterr().err
 
 
 def test_what_cannot_be_judged_is_an_error_and_not_an_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

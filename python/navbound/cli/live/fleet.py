@@ -150,6 +150,8 @@ def alerts(fleet: Fleet, follow: Annotated[bool, typer.Option("--follow", help="
         for record in records(transport, stop=stop, follow=follow):
             sys.stdout.write(transition.line(record) + "\n")
             sys.stdout.flush()
+        if not follow and (behind := [str(lane) for lane in range(transport.n_lanes) if _is_behind(transport, lane)]):
+            say(f"not all is judged: lanes {', '.join(behind)} hold more; navbound live work {fleet} goes on")
 
 
 def _settings(source: str, form: str | None, *, spec: str, rnp_table: Path | None, **others: Any) -> Settings:
@@ -260,6 +262,12 @@ class _Screen:
             say("the data have ended; the page stays open until Ctrl-C")
             while not stop():
                 time.sleep(0.1)
+
+
+def _is_behind(transport: Transport, lane: int) -> bool:
+    """Whether a lane holds more than what its worker has shown as judged; where nobody has shown anything that is not known."""
+    shown = transport.shown(lane)
+    return bool(shown) and int(json_of(shown[-1][0])["position"]) < transport.came_in(lane).end()
 
 
 def _say_refused(transport: Transport) -> None:
