@@ -18,6 +18,7 @@ from navbound.errors import FormatError
 from navbound.live import journal
 from navbound.live.fleet import Worker, connect
 from navbound.live.fleet.crew import Crew
+from navbound.live.fleet.files import STATUS
 
 N, SECONDS, SEED = 60, 40, 2
 
@@ -96,6 +97,10 @@ def test_alerts_of_a_fleet_that_is_judged_in_part_say_so(tmp_path: Path, capsys:
         log.append(_core.live_input("heartbeat", 1, b""), log.end())
     alerts(name)
     assert "not all is judged: lanes 1 hold more" in capsys.readouterr().err
+    # What a kill tore says nothing, and is no error.
+    (tmp_path / "fleet" / "lane-01" / STATUS).write_bytes(b'{"lane": 1, "posi')
+    alerts(name)
+    assert "Traceback" not in capsys.readouterr().err
 
 
 def test_what_cannot_be_judged_is_an_error_and_not_an_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

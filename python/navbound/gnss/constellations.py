@@ -250,11 +250,13 @@ def _refused_words(name: str, content: bytes, refused: Sequence[tuple[str, int, 
     """How many records cannot be read, and the satellites that have no other."""
     if not refused:
         return []
-    lines, of = content.decode("latin-1").splitlines(), set[str]()
-    for _, line, *_ in refused:
-        begins = (_RECORD.match(text) for text in reversed(lines[:line]))
-        if (begin := next(filter(None, begins), None)) is not None:
-            of.add(begin[1].replace(" ", "0") if begin[1] else f"G{int(begin[2]):02d}")
+    damaged, of, begun = {line for _, line, *_ in refused}, set[str](), ""
+    # One pass: a file may be damaged at every line.
+    for line, text in enumerate(content.decode("latin-1").splitlines(), 1):
+        if (begin := _RECORD.match(text)) is not None:
+            begun = begin[1].replace(" ", "0") if begin[1] else f"G{int(begin[2]):02d}"
+        if line in damaged and begun:
+            of.add(begun)
     without = ", ".join(sorted(of - known))
     alone = f"; {without} left out, without any other" if without else ""
     n = "1 record" if len(refused) == 1 else f"{len(refused)} records"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
-from navbound.read.checks.places import east_north_m, half_turn_s
+from navbound.read.checks.places import east_north_m, half_turn_s, wrapped
 from navbound.read.checks.plausible import plausible_rows
 from navbound.read.tables.columns import NO_COLUMN, declare
 from navbound.records.material import Scatter
@@ -259,7 +259,7 @@ class _Directions:
         speed, whither = _between_statements(rows)
         plain = _Ways(rows, _WINDOW_S)
         own_mps = np.where(np.isfinite(speed[:-1]), 0.5 * (speed[:-1] + speed[1:]), plain.step_m / np.maximum(plain.step_s, 1e-9))
-        turn = _wrapped(np.diff(whither))
+        turn = wrapped(np.diff(whither))
         mean, half = whither[:-1] + 0.5 * turn, 0.5 * turn
         chord = np.sinc(half / np.pi)[:, None] * np.column_stack([np.sin(mean), np.cos(mean)])
         stated_m = 0.5 * (speed[:-1] + speed[1:]) * plain.step_s
@@ -278,10 +278,6 @@ class _Directions:
             gross = aside_m > _GROSS * by_speed_m + margin_m and beyond_m > _GROSS_M
             name = rows["track"][at.start]
             self._aside.count(name, false=beyond_m > 0.0, lengths_m=(aside_m, by_speed_m), gross=gross, beyond_m=beyond_m)
-
-
-def _wrapped(angle: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.arctan2(np.sin(angle), np.cos(angle))
 
 
 def _between_statements(rows: pl.DataFrame) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -303,7 +299,7 @@ def _even(time_s: NDArray[np.float64], stated: NDArray[np.float64], speed: NDArr
     if known.size in {0, stated.size}:
         return stated
     at, values = time_s[known], stated[known]
-    values = values if speed is None else np.cumsum(np.concatenate([values[:1], _wrapped(np.diff(values))]))
+    values = values if speed is None else np.cumsum(np.concatenate([values[:1], wrapped(np.diff(values))]))
     even = np.interp(time_s, at, values, left=math.nan, right=math.nan)
     after = np.searchsorted(at, time_s, side="left").clip(0, at.size - 1)
     before = (np.searchsorted(at, time_s, side="right") - 1).clip(0, at.size - 1)

@@ -6,7 +6,6 @@ import sys
 import time
 from collections import Counter
 from dataclasses import asdict, dataclass
-from json import loads as json_of
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -266,16 +265,19 @@ class _Screen:
 
 def _is_behind(transport: Transport, lane: int) -> bool:
     """Whether a lane holds more than what its worker has shown as judged; where nobody has shown anything that is not known."""
-    shown = transport.shown(lane)
-    return bool(shown) and int(json_of(shown[-1][0])["position"]) < transport.came_in(lane).end()
+    from navbound.live.fleet.reading import newest_status  # noqa: PLC0415
+
+    shown = newest_status(transport, lane)
+    return bool(shown) and shown["position"] < transport.came_in(lane).end()
 
 
 def _say_refused(transport: Transport) -> None:
     """What was refused of the lines, by reason; what the lanes showed last counts."""
+    from navbound.live.fleet.reading import newest_status  # noqa: PLC0415
+
     n: Counter[str] = Counter()
     for lane in range(transport.n_lanes):
-        shown = transport.shown(lane)
-        counters = json_of(shown[-1][0]).get("counters", {}) if shown else {}
+        counters = newest_status(transport, lane).get("counters", {})
         n.update({name.removeprefix("refused_"): int(each) for name, each in counters.items() if name.startswith("refused_") and each})
     if n:
         say(f"refused of what was fed: {', '.join(f'{count} {reason}' for reason, count in sorted(n.items()))}")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import json
 from typing import TYPE_CHECKING, Any
 
 from navbound import _core
@@ -42,6 +44,16 @@ class Reader:
     def behind(self) -> bool:
         """Whether there is more; asks whoever carries the fleet."""
         return any(at < log.end() for at, log in zip(self._at, self._logs, strict=True))
+
+
+def newest_status(transport: Transport, lane: int) -> dict[str, Any]:
+    """What a lane's worker has shown last since the last call; nothing where there is none, or it is damaged."""
+    for status, _ in reversed(transport.shown(lane)):
+        with contextlib.suppress(ValueError):
+            shown = json.loads(status)
+            if isinstance(shown, dict) and isinstance(shown.get("position"), int) and isinstance(shown.get("counters"), dict):
+                return shown
+    return {}
 
 
 def records(transport: Transport, *, stop: Callable[[], bool], follow: bool) -> Iterator[dict[str, Any]]:

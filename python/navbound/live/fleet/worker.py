@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
-import json
 import time
 from typing import TYPE_CHECKING, Any
 
 from navbound.live.fleet.lane_run import LaneRun
+from navbound.live.fleet.reading import newest_status
 from navbound.live.fleet.transport import FencedError, UnreachableError
 from navbound.live.session import now_ns
 from navbound.live.settings import Settings
@@ -107,9 +106,7 @@ class Worker:
         """Position to which a lane is judged and out, as far as this worker knows. [B]."""
         if (run := self.lanes.get(lane)) is not None:
             return -1 if run.is_unsent else run.position
-        for status, _ in self._transport.shown(lane):
-            with contextlib.suppress(ValueError, KeyError, TypeError):
-                self._elsewhere[lane] = max(self._elsewhere[lane], int(json.loads(status)["position"]))
+        self._elsewhere[lane] = max(self._elsewhere[lane], newest_status(self._transport, lane).get("position", 0))
         return self._elsewhere[lane]
 
     def _round(self) -> int:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
-from navbound.read.checks.places import east_north_m, half_turn_s
+from navbound.read.checks.places import east_north_m, half_turn_s, wrapped
 from navbound.read.checks.plausible import plausible_rows
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class Axes:
         place = rows.select("est_lat_rad", "est_lon_rad").to_numpy()
         at_rows = rows["ground_track_rad"].fill_null(np.nan).to_numpy()
         turn = np.diff(at_rows)
-        reported = np.where(np.isfinite(turn), at_rows[:-1] + 0.5 * np.arctan2(np.sin(turn), np.cos(turn)), at_rows[1:])
+        reported = np.where(np.isfinite(turn), at_rows[:-1] + 0.5 * wrapped(turn), at_rows[1:])
         track = rows["track"].rle_id().to_numpy()
         same = (track[1:] == track[:-1]) & np.isfinite(reported)
         move, exchanged = east_north_m(place[:-1], place[1:]), east_north_m(place[:-1, ::-1], place[1:, ::-1])
@@ -87,7 +87,7 @@ def _spans(track: pl.Series) -> Iterator[tuple[str, slice]]:
 
 def _agreeing(move: NDArray[np.float64], reported: NDArray[np.float64]) -> NDArray[np.bool_]:
     away = np.arctan2(move[:, 0], move[:, 1]) - reported
-    return np.abs(np.arctan2(np.sin(away), np.cos(away))) <= _NEAR_RAD
+    return np.abs(wrapped(away)) <= _NEAR_RAD
 
 
 def doubts_of_axes(epochs: pl.DataFrame) -> list[str]:

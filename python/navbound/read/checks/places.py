@@ -35,6 +35,12 @@ def east_north_m(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArra
     return np.column_stack(np.broadcast_arrays(east, north))
 
 
+def wrapped(angle_rad: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The same angles within half a turn. [rad]."""
+    within: NDArray[np.float64] = np.arctan2(np.sin(angle_rad), np.cos(angle_rad))
+    return within
+
+
 def half_turn_s(speed_mps: NDArray[np.float64]) -> NDArray[np.float64]:
     """Time below which no aircraft turns by half a turn, at 60 degrees of bank: the direction between two statements is known. [s]."""
     return np.pi * np.abs(speed_mps) / _core.TURNING_MPS2
