@@ -136,6 +136,18 @@ def test_a_stand_with_noise_while_the_recording_states_a_speed_shows_nothing(
     assert "less far" in " ".join(verdict.position_doubts)
 
 
+def test_positions_that_repeat_now_and_then_do_not_hide_their_minute(tmp_path: Path) -> None:
+    """Ten minutes of a stand with noise at a stated speed, written to a ten-thousandth of a degree: some are the same as the one before."""
+    path = stand(tmp_path / "a.csv", 600, "ground_speed_kt", 40.0)
+    head, *rows = path.read_text().splitlines()
+    coarse = [",".join([row.split(",")[0], *(f"{float(x):.4f}" for x in row.split(",")[1:3]), *row.split(",")[3:]]) for row in rows]
+    path.write_text("\n".join([head, *coarse]) + "\n")
+    verdict = navbound.analyze(path).summary.verdict
+    assert verdict.n_reason["position_held"] > 5
+    assert verdict.id == "not_shown"
+    assert "less far" in " ".join(verdict.position_doubts)
+
+
 def test_turns_of_an_aircraft_are_no_shorter_way(tmp_path: Path) -> None:
     """A holding pattern and a circle at three degrees a second, twice the usual rate of a light aircraft's steep turn."""
     rows = ["time,lat_deg,lon_deg,sigma_e_m,sigma_n_m,speed_mps"]

@@ -64,6 +64,43 @@ def test_a_row_of_a_speed_alone_is_heard(tmp_path: Path, every: int) -> None:
     assert whole.epochs["status"].to_list() == pieces.epochs["status"].to_list()
 
 
+def led_aside(path: Path, side_mps: float) -> Path:
+    """A flight to the north with a second speed to the east; rows of their own state speed and track, each 22 s."""
+    lines = ["time_s,lat_deg,lon_deg,nac_p,ground_speed_mps,track_deg"]
+    for k in range(N):
+        lat, lon = 48.0 + SPEED_MPS * k * DEG_PER_M, 2.0 + side_mps * k * DEG_PER_M / 0.669
+        lines.append(f"{1_700_000_000 + k},{lat:.9f},{lon:.9f},10,,")
+        lines += [f"{1_700_000_000 + k},,,,{(SPEED_MPS**2 + side_mps**2) ** 0.5},0.0"] * (k % 22 == 0)
+    path.write_text("\n".join(lines) + "\n", encoding="ascii")
+    return path
+
+
+@pytest.mark.parametrize(("side_mps", "shown"), [(0.0, True), (40.0, False)])
+def test_a_row_of_speed_and_track_alone_says_whither(tmp_path: Path, side_mps: float, shown: bool) -> None:
+    whole = navbound.analyze(led_aside(tmp_path / "a.csv", side_mps))
+    assert whole.summary.verdict.id == ("inside" if shown else "not_shown")
+    # The row after it has the direction, and no other: it is soon another one.
+    assert whole.epochs["ground_track_rad"].count() == N // 22 + 1
+    for piece_rows in (7, 150):
+        pieces = navbound.analyze(led_aside(tmp_path / "a.csv", side_mps), piece_rows=piece_rows)
+        assert pieces.epochs["ground_track_rad"].equals(whole.epochs["ground_track_rad"], null_equal=True)
+        assert pieces.summary.verdict.position_doubts == whole.summary.verdict.position_doubts
+
+
+@pytest.mark.parametrize(("age_s", "shown"), [(0.3, True), (60.0, False)])
+def test_ages_that_few_rows_state_speak_for_the_others(tmp_path: Path, age_s: float, shown: bool) -> None:
+    """Each 25th row states an age: that of the others is not known where these are old."""
+    moving = [
+        stand(0) | {"time_s": 1_700_000_000 + k, "lat_deg": 48.0 + k * SPEED_MPS * DEG_PER_M} | ({} if k % 25 else {"seen_pos": age_s})
+        for k in range(N)
+    ]
+    moving[1]["seen_pos"] = None
+    for piece_rows in (None, 50):
+        verdict = judged(tmp_path / "a.json", moving, piece_rows).summary.verdict
+        assert verdict.id == ("inside" if shown else "not_shown")
+        assert any("how old those positions are is not known" in each for each in verdict.position_doubts) != shown
+
+
 def split(folder: Path, every_s: float) -> Path:
     """One velocity a row, in turn."""
     lines = ["time_s,lat_deg,lon_deg,nac_p,vel_n_mps,vel_e_mps"]

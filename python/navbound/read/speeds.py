@@ -127,7 +127,10 @@ class Speeds:
             return
         speed = pl.lit(float("nan")) if speed is None else speed
         own = {"_speed": speed, "_sigma": _sigma_m(epochs), "_whither": _whither(epochs), "_plausible": plausible_rows(epochs)}
-        rows = epochs.select("track", "time_ns", "est_lat_rad", "est_lon_rad", **own)
+        # A position of which something worse is known already is passed over: it must not hide the minute around it.
+        rows = epochs.select("track", "time_ns", "est_lat_rad", "est_lon_rad", **own).filter("_plausible").drop("_plausible")
+        if rows.is_empty():
+            return
         self._steps.see(rows)
         self._directions.see(rows)
         rows = rows.with_columns(_speed_ns=pl.when(pl.col("_speed").is_finite()).then("time_ns"))
@@ -187,9 +190,8 @@ class _Ways:
         self.time_s = (rows["time_ns"] - rows["time_ns"][0]).to_numpy() * 1e-9
         self.place, self._sigma = rows.select("est_lat_rad", "est_lon_rad").to_numpy(), rows["_sigma"].to_numpy()
         self.step_s, self.step_m = np.diff(self.time_s), np.hypot(*east_north_m(self.place[:-1], self.place[1:]).T)
-        track, plausible = rows["track"].rle_id().to_numpy(), rows["_plausible"].to_numpy()
-        self.sound = plausible[1:] & plausible[:-1] & (track[1:] == track[:-1])
-        self.sound &= np.isfinite(self.step_m) & (self.step_s > 0) & (self.step_s <= longest_s)
+        track = rows["track"].rle_id().to_numpy()
+        self.sound = (track[1:] == track[:-1]) & np.isfinite(self.step_m) & (self.step_s > 0) & (self.step_s <= longest_s)
 
     def apart_en_m(self, at: slice) -> NDArray[np.float64]:
         """From the begin of a window to its end."""
@@ -317,7 +319,7 @@ class _Steps:
 
     def see(self, rows: pl.DataFrame) -> None:
         """The next rows, in the order of track and time, with the speeds that they state themselves."""
-        rows = rows.select("track", "time_ns", "est_lat_rad", "est_lon_rad", "_speed", "_sigma", "_plausible")
+        rows = rows.select("track", "time_ns", "est_lat_rad", "est_lon_rad", "_speed", "_sigma")
         rows = rows if self._last is None else pl.concat([self._last, rows])
         self._last = rows.tail(1)
         place, speed = rows.select("est_lat_rad", "est_lon_rad").to_numpy(), rows["_speed"].to_numpy()
@@ -329,9 +331,8 @@ class _Steps:
         sigma = rows["_sigma"].to_numpy() / math.sqrt(2.0)
         margin_m += _K95 * np.hypot(sigma[:-1], sigma[1:])
         left_m = np.abs(np.hypot(*east_north_m(place[:-1], place[1:]).T) - mean * step_s) - margin_m
-        track, plausible = rows["track"].rle_id().to_numpy(), rows["_plausible"].to_numpy()
-        sound = plausible[1:] & plausible[:-1] & (track[1:] == track[:-1])
-        sound &= (step_s > 0) & (step_s <= _LONGEST_STEP_S) & np.isfinite(left_m)
+        track = rows["track"].rle_id().to_numpy()
+        sound = (track[1:] == track[:-1]) & (step_s > 0) & (step_s <= _LONGEST_STEP_S) & np.isfinite(left_m)
         names = rows["track"][1:].filter(pl.Series(sound))
         bins = np.searchsorted(_SCATTER_BINS_M, left_m[sound])
         begin = 0

@@ -174,7 +174,7 @@ def material(
         else words_beside(claimed, _unread(readings))
     )
     speeds = speeds_of(epochs)
-    position_doubts = [*_doubts(readings, decided=truth is not None), *speeds.doubts(), *doubts_of_axes(epochs)]
+    position_doubts = [*_doubts(readings, decided=truth is not None), *plausibility.doubts, *speeds.doubts(), *doubts_of_axes(epochs)]
     truth_doubts, assumptions = TruthDoubts(), [of_covariance, plausibility.words]
     if truth is not None:
         epochs, words, other, truth_doubts = with_truth(epochs, named)

@@ -59,6 +59,8 @@ _UNDATED = -(2**63)
 _REASON_ID = [None, "position_held", "position_stale", "position_jump", "position_not_settled", "position_late", "position_ahead"]
 """What the core found, by its codes."""
 _JUMP = _REASON_ID.index("position_jump")
+_OLD_SHARE, _SILENT_SHARE = 0.5, 0.05
+"""Shares of the rows that state an age, and of the rows that could, from which old positions and silence leave the others doubted. Ours."""
 
 
 @dataclass(frozen=True)
@@ -81,6 +83,8 @@ class Plausibility:
         The largest of all steps.
     words : str
         The same as a sentence.
+    doubts : tuple of str
+        Why no position is believed.
     """
 
     n_repeated: int
@@ -95,6 +99,7 @@ class Plausibility:
     n_steps_5km: int
     largest_step_m: float
     words: str
+    doubts: tuple[str, ...] = ()
 
 
 def plausible_rows(epochs: pl.DataFrame) -> pl.Expr:
@@ -150,7 +155,7 @@ class Checker:
         self._n = np.zeros(len(_REASON_ID), dtype=np.int64)
         self._n_steps = self._n_fast = self._n_dated = self._n_rows = self._n_doubted = self._n_twice = 0
         self._largest = self._fastest = self._oldest_s = self._furthest_m = 0.0
-        self._n_old = 0
+        self._ages: dict[str, NDArray[np.int64]] = {}
 
     def see(self, epochs: pl.DataFrame) -> None:
         """See the next part of one track that goes on in other pieces."""
@@ -167,7 +172,7 @@ class Checker:
             if not seen:
                 track.see(reports)
             findings = track.judge(reports, _speeds_after(name, after))
-            self._see_ages(findings["finding"], reports)
+            self._see_ages(name, findings["finding"], reports)
             judged.append(findings)
             # Rows are in the order of tracks: only the last one may go on.
             self._tracks = {name: track} | {k: v for k, v in self._tracks.items() if k > name}
@@ -180,12 +185,13 @@ class Checker:
         self._count(code, step, fast, columns)
         return _marked(epochs, code)
 
-    def _see_ages(self, code: NDArray[np.uint8], reports: _Reports) -> None:
+    def _see_ages(self, track: str, code: NDArray[np.uint8], reports: _Reports) -> None:
         """How old the positions are by their own rows, and how far the aircraft has moved since, where that is no finding."""
         time_ns, fixed_ns, _, _, speed_mps = reports
         dated = fixed_ns != _UNDATED
         age_s = (time_ns[dated] - fixed_ns[dated]) * 1e-9
-        self._n_old += int((age_s > self._limits.fix_latency_s).sum())
+        n_old, n_silent = (age_s > self._limits.fix_latency_s).sum(), (code[~dated] == 0).sum()
+        self._ages[track] = self._ages.get(track, np.zeros(3, dtype=np.int64)) + np.array([dated.sum(), n_old, n_silent])
         plausible = code[dated] == 0
         self._oldest_s = max(self._oldest_s, float(age_s[plausible].max(initial=0.0)))
         self._furthest_m = max(self._furthest_m, float(np.nan_to_num(age_s * speed_mps[dated])[plausible].max(initial=0.0)))
@@ -228,8 +234,8 @@ class Checker:
             words += (
                 f" {self._n_dated} of {self._n_rows} rows say when their position was valid; between those, steps are judged by that time."
             )
-            if self._n_old:
-                words += f" {self._n_old} positions that are older than {limits.fix_latency_s:g} s count as held."
+            if n_old := sum(int(each[1]) for each in self._ages.values()):
+                words += f" {n_old} positions that are older than {limits.fix_latency_s:g} s count as held."
             if self._oldest_s > 0.0:
                 words += (
                     f" The others are up to {self._oldest_s:.2g} s old, in which the aircraft moved up to {self._furthest_m:.0f} m: a "
@@ -237,7 +243,18 @@ class Checker:
                 )
         repeated, stale, jump, unsettled, late, ahead = (int(k) for k in n[1:])
         counts = (repeated, stale, jump + self._n_twice, unsettled, late, ahead)
-        return Plausibility(*counts, self._n_fast, fastest, self._n_doubted, n_steps, largest, words)
+        return Plausibility(*counts, self._n_fast, fastest, self._n_doubted, n_steps, largest, words, self._doubts())
+
+    def _doubts(self) -> tuple[str, ...]:
+        """Ages that a track states now and then say what the age of its other positions is."""
+        old = {name: n for name, n in self._ages.items() if n[1] > _OLD_SHARE * n[0] and n[2] > _SILENT_SHARE * (n[0] + n[2])}
+        if not old:
+            return ()
+        name, (n_dated, n_old, n_silent) = next(iter(old.items()))
+        return (
+            f"{n_old} of {n_dated} rows of track {name} that say when their position was valid say that it is older than "
+            f"{self._limits.fix_latency_s:g} s, and {n_silent} rows say nothing of it: how old those positions are is not known",
+        )
 
 
 def _columns(epochs: pl.DataFrame) -> pl.DataFrame:

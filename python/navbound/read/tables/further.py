@@ -161,13 +161,18 @@ class Speeds:
         if "ground_speed_mps" not in rows.columns:
             return rows
         every = pl.repeat(value=True, n=rows.height, eager=True)
-        return rows.with_columns(self._filled(rows, "ground_speed_mps", of=left_out, to=every))
+        filled = [self._filled(rows, "ground_speed_mps", of=left_out, to=every)]
+        if "ground_track_rad" in rows.columns:
+            # A direction is soon another one: the row after it alone has it.
+            with_position = rows.select(left_out.not_()).to_series()
+            filled.append(self._filled(rows, "ground_track_rad", of=left_out, to=with_position, once=True))
+        return rows.with_columns(filled)
 
-    def _filled(self, rows: pl.DataFrame, name: str, *, of: pl.Expr, to: pl.Series) -> pl.Series:
-        """A column, filled at the rows `to` by what the last of the rows `of` states."""
+    def _filled(self, rows: pl.DataFrame, name: str, *, of: pl.Expr, to: pl.Series, once: bool = False) -> pl.Series:
+        """A column, filled at the rows `to` by what the last of the rows `of` states, or at the first of them that follows it."""
         line = pl.col(LINE).cast(pl.Int64)
         spoken = rows.filter(of & pl.col(name).is_finite() & pl.col("time_ns").is_not_null())
-        known = spoken.select("track", line, pl.col("time_ns").alias("spoken_ns"), pl.col(name).alias("spoken"))
+        known = spoken.select("track", line, pl.col("time_ns").alias("spoken_ns"), pl.col(name).alias("spoken"), line.alias("said_in"))
         known = pl.concat([self._last.get(name, known.clear()), known])
         if known.is_empty():
             return rows[name]
@@ -175,6 +180,10 @@ class Speeds:
         open_rows = rows.select("track", line, "time_ns", name, to=to)
         open_rows = open_rows.join_asof(known, on=LINE, by="track", check_sortedness=False)
         fresh = (pl.col("time_ns") - pl.col("spoken_ns")).is_between(0, int(Limits.latency_s * 1e9))
+        if once:
+            used = open_rows.filter("to")["said_in"]
+            self._last[name] = self._last[name].filter(pl.col("said_in").is_in(used.implode()).not_())
+            fresh &= pl.struct("track", "said_in", "to").is_first_distinct()
         return open_rows.select(pl.coalesce(name, pl.when(pl.col("to") & fresh).then("spoken")).alias(name)).to_series()
 
 

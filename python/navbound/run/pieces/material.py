@@ -157,18 +157,19 @@ def in_pieces(path: Path, request: Request) -> InPieces:
         ends.see(ready)
         epochs.put(ready.drop(AUXILIARY, strict=False))
     reading.pieces.close()
+    plausibility = checks.checker.plausibility()
     return InPieces(
         reading,
         epochs,
         left_out=flights.divide_left_out(reading.left_out),
         claimed=checks.claimed,
-        plausibility=checks.checker.plausibility(),
+        plausibility=plausibility,
         labels=labels.usual(),
         labels_before=checks.labels.usual(),
         with_levels=frozenset(labels.with_levels),
         period_s=steps.median_s(),
         flights=flights.words(),
-        position_doubts=[*checks.speeds.doubts(), *checks.axes.words()],
+        position_doubts=[*plausibility.doubts, *checks.speeds.doubts(), *checks.axes.words()],
         scatter=checks.speeds.scatter(),
         ends=ends.table(),
     )
