@@ -64,3 +64,46 @@ def test_a_lead_aside_shows_between_rows_and_statements_that_are_far_apart(tmp_p
     assert doubted(tmp_path, table)
     straight = [row | {"lon_deg": 2.0} for row in table]
     assert not doubted(tmp_path, straight)
+
+
+def turned(n: int, at: int) -> list[dict[str, Any]]:
+    """To the north, and from some second on to the east, which no track states."""
+    east_m = [SPEED_MPS * max(0, k - at) for k in range(n)]
+    table = rows(n, ground_speed_mps=SPEED_MPS, track_deg=0.0)
+    place = [{"lat_deg": 48.0 + min(k, at) * SPEED_MPS * DEG_PER_M, "lon_deg": 2.0 + east_m[k] * DEG_PER_M / 0.65} for k in range(n)]
+    return [row | at_k for row, at_k in zip(table, place, strict=True)]
+
+
+@pytest.mark.parametrize(("spell", "of"), [(59, 104), (40, 110)])
+def test_statements_in_spells_are_compared(tmp_path: Path, spell: int, of: int) -> None:
+    stated = [row if k % of < spell else row | {"track_deg": None} for k, row in enumerate(turned(2400, 1200))]
+    assert doubted(tmp_path, stated)
+    right = [row if k % of < spell else row | {"track_deg": None} for k, row in enumerate(turned(2400, 2400))]
+    assert not doubted(tmp_path, right)
+
+
+def test_a_flight_that_is_right_at_first_hides_no_end_that_is_not(tmp_path: Path) -> None:
+    """A track each 50 s is no direction between; the steps to its rows have one."""
+    table = [row if k % 50 == 0 else row | {"track_deg": None} for k, row in enumerate(turned(4000, 2400))]
+    words = "move aside of the reported track"
+    for piece_rows in (None, 333):
+        assert any(words in each for each in analyzed(tmp_path, table, piece_rows=piece_rows).summary.verdict.position_doubts)
+    # Five minutes are not full.
+    assert not any(words in each for each in analyzed(tmp_path, table[:2650]).summary.verdict.position_doubts)
+
+
+@pytest.mark.parametrize("hold_s", [30, 90, 250])
+def test_a_position_that_goes_on_from_where_it_stood_is_as_late_as_it_stood(tmp_path: Path, hold_s: int) -> None:
+    def place(second: int) -> dict[str, Any]:
+        return {"lat_deg": 48.0 + second * SPEED_MPS * DEG_PER_M}
+
+    table, end = rows(1200, ground_speed_mps=SPEED_MPS, track_deg=0.0), 600 + hold_s
+    stopped = [row | place(min(k, 600) if k < end else k - hold_s) for k, row in enumerate(table)]
+    reasons = analyzed(tmp_path, stopped).epochs["reason_id"].to_list()
+    assert set(reasons[:600]) == {None}
+    assert set(reasons[605:]) == {"position_stale"}
+    # One that is where the aircraft is after the hold is believed, and so is one that catches up in the end.
+    at_once = [row | place(600 if 600 < k < end else k) for k, row in enumerate(table)]
+    assert set(analyzed(tmp_path, at_once).epochs["reason_id"].to_list()[end:]) <= {None, "position_late"}
+    later = [row | place(min(k, 600) if k < end else k - hold_s if k < 1000 else k) for k, row in enumerate(table)]
+    assert analyzed(tmp_path, later).epochs["reason_id"].to_list()[-100:] == [None] * 100

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import struct
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
@@ -128,3 +129,26 @@ def test_a_refused_evaluation_leaves_nothing_behind(whole: tuple[Path, Path], tm
     with pytest.raises(FormatError, match="cannot be read"):
         navbound.evaluate([damaged(path, 5), navigation], levels="NPA", out=tmp_path / "run")
     assert not (tmp_path / "run").exists() or not list((tmp_path / "run").iterdir())
+
+
+@pytest.mark.parametrize(("n_more", "shown"), [(0, True), (1, True), (600, False)])
+def test_a_log_that_goes_on_without_measurements_has_lost_those_epochs(tmp_path: Path, n_more: int, shown: bool) -> None:
+    """The receiver says each second that it has a position, for some seconds longer than the three minutes that it measures."""
+    examples = Path(__file__).parents[1] / "examples" / "data"
+    measured = (examples / "receiver.ubx").read_bytes()
+    times_ns = gnss.read_observations(examples / "receiver.ubx").time_ns
+    begin = datetime(1980, 1, 6, tzinfo=UTC) + timedelta(seconds=int(times_ns[0]) // 10**9 - 18)
+    own = b""
+    for second in range(180 + n_more):
+        at = begin + timedelta(seconds=second)
+        payload = bytearray(pvt(second)[6:-2])
+        struct.pack_into("<IHBBBBBB", payload, 0, 0, at.year, at.month, at.day, at.hour, at.minute, at.second, 0b111)
+        own += ubx(b"\x01\x07", bytes(payload))
+    log = tmp_path / "log.ubx"
+    log.write_bytes(measured + own)
+    run = navbound.analyze([log, examples / "receiver-broadcast.rnx"], solve=True)
+    verdict = run.summary.verdict
+    assert (verdict.id == "inside") == shown
+    assert any("the log holds no measurements" in words for words in run.summary.assumptions) != shown
+    # One second beside a measurement is of its epoch; those between it and the first that is lost are a gap.
+    assert verdict.n_epochs == 180 + (0 if shown else n_more)

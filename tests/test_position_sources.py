@@ -86,6 +86,36 @@ def test_a_file_of_readsb_says_whose_a_position_is_as_its_live_lines_do(tmp_path
     assert reported(path) == foreign_live(tmp_path, claim)
 
 
+@pytest.mark.parametrize("kind", ["json", "parquet"])
+def test_what_an_object_in_a_record_states_is_a_column(tmp_path: Path, kind: str) -> None:
+    """Recordings keep the message of a receiver in their records: what it says of the position counts as if it stood beside it."""
+    foreign = {"type": "tisb_icao", "nic": 0, "nac_p": 0, "own": {"sil": 0, "track": 1.0}}
+    own = {"type": "adsb_icao", "nic": 8, "nac_p": 10, "own": {"sil": 3, "track": 1.0}}
+    for message, shown in ((own, True), (foreign, False)):
+        states = [
+            {
+                "now": 1_700_000_000 + k,
+                "hex": "3c6444",
+                "lat": 48.0 + k * SPEED_MPS * DEG_PER_M,
+                "lon": 2.0,
+                "track": 0.0,
+                "message": message,
+            }
+            for k in range(N)
+        ]
+        path = tmp_path / f"states.{kind}"
+        if kind == "json":
+            path.write_text(json.dumps(states), encoding="utf-8")
+        else:
+            pl.DataFrame(states).write_parquet(path)
+        for piece_rows in (None, 7):
+            run = navbound.analyze(path, piece_rows=piece_rows)
+            assert (run.summary.verdict.id == "inside") == shown
+            assert set(run.epochs["status"]) == ({"ok"} if shown else {"not_available"})
+        # Of two of one name each keeps the keys that lead to it.
+        assert any("own.track" in words for words in run.summary.assumptions)
+
+
 def test_a_trace_without_a_source_anywhere_is_reported(tmp_path: Path) -> None:
     claimed: list[dict[str, Any] | None] = [{"nac_p": 10, "nic": 8}] * N
     assert reported(trace(tmp_path, [None] * N, claimed))

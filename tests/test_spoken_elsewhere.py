@@ -101,10 +101,10 @@ def test_ages_that_few_rows_state_speak_for_the_others(tmp_path: Path, age_s: fl
         assert any("how old those positions are is not known" in each for each in verdict.position_doubts) != shown
 
 
-def split(folder: Path, every_s: float) -> Path:
+def split(folder: Path, every_s: float, n: int = N) -> Path:
     """One velocity a row, in turn."""
     lines = ["time_s,lat_deg,lon_deg,nac_p,vel_n_mps,vel_e_mps"]
-    for k in range(N):
+    for k in range(n):
         each = stand(k)
         velocities = ",85.0" if k % 2 else "85.0,"
         lines.append(f"{1_700_000_000 + every_s * k},{each['lat_deg']:.9f},2.0,10,{velocities}")
@@ -116,8 +116,8 @@ def split(folder: Path, every_s: float) -> Path:
 def test_one_velocity_a_row_is_a_speed(tmp_path: Path) -> None:
     whole = navbound.analyze(split(tmp_path, 1.0))
     assert n_stale(whole) > 0.9 * N
-    for piece_rows in (1, 29):
-        pieces = navbound.analyze(split(tmp_path, 1.0), piece_rows=piece_rows)
+    for n, piece_rows in ((30, 1), (N, 29)):
+        whole, pieces = (navbound.analyze(split(tmp_path, 1.0, n), piece_rows=rows) for rows in (None, piece_rows))
         assert whole.epochs.select("status", "ground_speed_mps").equals(pieces.epochs.select("status", "ground_speed_mps"))
     # The other velocity of more than ten seconds ago is none of now.
     assert navbound.analyze(split(tmp_path, 11.0)).epochs["ground_speed_mps"].null_count() == N

@@ -38,10 +38,10 @@ def column(name: str, value: object) -> dict[str, Any]:
     return {name: value}
 
 
-def analyzed(tmp_path: Path, table: list[dict[str, Any]]) -> Run:
+def analyzed(tmp_path: Path, table: list[dict[str, Any]], **more: Any) -> Run:
     path = tmp_path / "a.json"
     path.write_text(json.dumps(table), encoding="utf-8")
-    return navbound.analyze(path)
+    return navbound.analyze(path, **more)
 
 
 def reasons(run: Run) -> set[str | None]:
@@ -59,9 +59,17 @@ def test_an_old_position_is_as_one_that_repeats(tmp_path: Path, name: str, age_s
 
 
 @pytest.mark.parametrize(("age_s", "reason"), [(0.5, None), (1.0, None), (1.9, "position_held"), (2.5, "reported")])
-@pytest.mark.parametrize("name", ["seen_pos", "fix_age", "age_s"])
-def test_an_age_of_a_position_dates_it(tmp_path: Path, name: str, age_s: float, reason: str | None) -> None:
-    assert reasons(analyzed(tmp_path, rows(**column(name, age_s)))) == {reason}
+@pytest.mark.parametrize(("name", "unit_s"), [("seen_pos", 1.0), ("fix_age", 1.0), ("age_s", 1.0), ("seen_pos_ms", 1e-3)])
+def test_an_age_of_a_position_dates_it(tmp_path: Path, name: str, unit_s: float, age_s: float, reason: str | None) -> None:
+    assert reasons(analyzed(tmp_path, rows(**column(name, age_s / unit_s)))) == {reason}
+
+
+@pytest.mark.parametrize(("n_rows", "shown"), [(1, False), (3, True)])
+def test_positions_that_are_the_only_one_of_their_track_are_compared_with_nothing(tmp_path: Path, n_rows: int, shown: bool) -> None:
+    table = [row | {"icao24": f"{k // n_rows:06x}"} for k, row in enumerate(rows())]
+    verdict = analyzed(tmp_path, table).summary.verdict
+    assert verdict.id == ("inside" if shown else "not_shown")
+    assert any("the only one of its track" in each for each in verdict.position_doubts) != shown
 
 
 def test_the_words_state_the_way_in_the_age_of_a_position(tmp_path: Path) -> None:
@@ -371,7 +379,7 @@ def test_a_callsign_is_one_in_any_writing(tmp_path: Path) -> None:
     ("added", "named"),
     [
         ({"last_position": 1_700_000_000, "time_position": 1_699_999_000}, "time_position"),
-        ({"seen_pos_ms": 30000}, "seen_pos_ms"),
+        ({"pos_delay_ms": 30000}, "pos_delay_ms"),
     ],
 )
 def test_an_age_that_is_not_understood_is_named(tmp_path: Path, added: dict[str, Any], named: str) -> None:

@@ -8,7 +8,7 @@ use navbound_core::judge::{self, Judge};
 use navbound_core::monitor::ahead::{Ahead, Reached};
 use navbound_core::monitor::motion::{LastSpeed, Motion, Report};
 use navbound_core::monitor::neighbours::{Height, Neighbours, Place};
-use navbound_core::monitor::standing::{Fall, Gone, Owed, Stood};
+use navbound_core::monitor::standing::{Fall, Gone, Owed, Resumed, Stood};
 use navbound_core::monitor::way::{Mark, Through, Way};
 use navbound_core::quantity::{GpsTime, Metres};
 
@@ -98,6 +98,9 @@ impl Track {
             to.flag(stood.stale);
         });
         to.f64(gone.late_s);
+        to.option(gone.resumed, |to, resumed| {
+            [resumed.lat_rad, resumed.lon_rad, resumed.behind_m].into_iter().for_each(|number| to.f64(number));
+        });
         to.flag(gone.moved);
         to.f64(gone.crawled_s);
         to.option(self.motion.height, height);
@@ -172,6 +175,7 @@ impl Track {
                 Ok(Stood { time, lat_rad, lon_rad, way_m, early_m, stale: from.flag()? })
             })?,
             late_s: from.f64()?,
+            resumed: from.option(|from| Ok(Resumed { lat_rad: from.f64()?, lon_rad: from.f64()?, behind_m: from.f64()? }))?,
             moved: from.flag()?,
             crawled_s: from.f64()?,
         };

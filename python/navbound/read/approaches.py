@@ -229,7 +229,7 @@ def _missing_rules(epochs: Table, gates: Gates) -> list[str]:
     absent = [
         words for name, words in rules.items() if name not in epochs.columns and not (name == "altitude_m" and "est_h_m" in epochs.columns)
     ]
-    return [f"Approaches were found without a rule for {words}: the file does not hold it." for words in absent]
+    return [f"Approaches were found without a rule for {words}: no column of the file is read as it." for words in absent]
 
 
 def _gate(points: _Points, runway: Runway, index: int, gates: Gates, ruled: _Ruled) -> pl.DataFrame:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import polars as pl
@@ -16,22 +16,21 @@ from navbound.records.material import Scatter
 from navbound.table.columns import HORIZONTAL
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from numpy.typing import NDArray
 
 _WINDOW_S = 60.0
 """Span over which ways are compared; Doppler speeds and positions agree over it to some metres. Provenance: ours. [s]"""
 _WINDOW_NS = 60_000_000_000
-_WHOLE = 0.75
-"""Least part of a window that steps must fill. [1]"""
+_SHORTEST_S = 15.0
+"""Of a window the steps that follow one another are compared from this length on: what is compared now and then counts, too, at the margin
+of a whole window. Provenance: ours. [s]"""
 _LONGEST_STEP_S = 10.0
 """Over a longer step the speed may have been any. Provenance: ours. [s]"""
-_LEG_S = 10.0
+_LEG_NS = 10_000_000_000
 """Span of a leg of the way that positions travel: the noise of each step would add up to a way of its own. A turn of three degrees a second
-shortens it by one in a hundred. Provenance: ours. [s]"""
-_OFFSET_MPS = 3.0
-"""Difference of speeds that shows nothing: rounding, wind on a filtered track, a slow filter. Provenance: ours. [m/s]"""
+shortens it by one in a hundred. Provenance: ours. [ns]"""
+_OFFSET_M = 3.0 * _WINDOW_S
+"""Difference of ways over a window that shows nothing, 3 m/s: rounding, wind on a filtered track, a slow filter. Provenance: ours. [m]"""
 _LONGER, _SHORTER = 1.5, 0.6
 """Ratios of the way of the positions to that of the speeds that show nothing; knots for metres a second are 1.94 and 0.51. Ours. [1]"""
 _ASIDE = 0.05
@@ -40,9 +39,11 @@ between rows leave as much. Provenance: ours. [1]"""
 _DEVIATIONS = 6.0
 """Noise of two positions, in standard deviations of the covariance. Provenance: ours."""
 _LEAST, _LEAST_SHARE = 3, 0.2
-"""Windows of a track, and share of them, that must contradict; of fewer windows all of a recording. Provenance: ours."""
+"""Minutes of a track, and share of them, that must contradict; of fewer minutes all of a recording. Provenance: ours."""
+_WHOLE_S = 45.0
+"""A window from this length on is a minute. Provenance: ours. [s]"""
 _RUN = 5
-"""Windows on end that must contradict where the share is smaller. Provenance: ours."""
+"""Minutes on end that must contradict where the share is smaller. Provenance: ours."""
 _GROSS = 0.25
 """Share of the way by which a displacement is grossly elsewhere, where it is beyond the margins by `_GROSS_M`, too: `_LEAST` of a track
 contradict, however long it is. A speed and a track that a source repeats for a minute and a half while the aircraft turns make two (Paris).
@@ -65,27 +66,27 @@ _STATED_MPS, _STATED_SHARE = 1.0, 0.02
 
 
 @dataclass
-class _Minutes:
-    """Windows of one track that were compared, those that contradict, as many of these on end as there are, gross ones, and by how much."""
+class _Compared:
+    """Minutes of one track that were compared, that contradict, as many of these on end as there are, gross ones, and by how much."""
 
-    n: int = 0
-    n_false: int = 0
-    run: int = 0
-    longest: int = 0
-    n_gross: int = 0
+    minutes: float = 0.0
+    false: float = 0.0
+    run: float = 0.0
+    longest: float = 0.0
+    gross: float = 0.0
     excess_m: float = 0.0
 
-    def count(self, *, false: bool, gross: bool, excess_m: float) -> None:
-        self.n += 1
-        self.n_false += false
-        self.run = self.run + 1 if false else 0
+    def count(self, minutes: float, *, false: bool, gross: bool, excess_m: float) -> None:
+        self.minutes += minutes
+        self.false += minutes * false
+        self.run = self.run + minutes if false else 0.0
         self.longest = max(self.longest, self.run)
-        self.n_gross += gross
+        self.gross += minutes * gross
         self.excess_m += max(0.0, excess_m)
 
     def contradict(self) -> bool:
-        often = self.n_false >= _LEAST and (self.n_false >= _LEAST_SHARE * self.n or self.longest >= _RUN)
-        return often or self.n_gross >= _LEAST or self.excess_m > _MOST_EXCESS_M + _EXCESS_M * self.n
+        often = self.false >= _LEAST and (self.false >= _LEAST_SHARE * self.minutes or self.longest >= _RUN)
+        return often or self.gross >= _LEAST or self.excess_m > _MOST_EXCESS_M + _EXCESS_M * self.minutes
 
 
 @dataclass
@@ -93,23 +94,37 @@ class _Test:
     """One comparison, track by track: many that agree hide none that does not. Of the second length the first is such a share."""
 
     expected: float = 1.0
-    tracks: dict[str, _Minutes] = field(default_factory=dict)
+    tracks: dict[str, _Compared] = field(default_factory=dict)
     worst: tuple[float, float] = (0.0, 0.0)
     excess_m: float = 0.0
 
-    def count(self, track: str, *, false: bool, lengths_m: tuple[float, float], gross: bool = False, beyond_m: float = 0.0) -> None:
-        self.tracks.setdefault(track, _Minutes()).count(false=false, gross=gross, excess_m=beyond_m)
-        if false and (excess_m := abs(lengths_m[0] - self.expected * lengths_m[1])) > self.excess_m:
-            self.worst, self.excess_m = lengths_m, excess_m
+    def count(
+        self,
+        windows: _Minutes,
+        false: NDArray[np.bool_],
+        lengths_m: NDArray[np.float64],
+        *,
+        gross: NDArray[np.bool_] | None = None,
+        beyond_m: NDArray[np.float64] | None = None,
+    ) -> None:
+        """The next windows."""
+        none = np.zeros(len(windows.tracks))
+        further = (each.tolist() for each in (false, none > 0 if gross is None else gross, none if beyond_m is None else beyond_m))
+        minutes = np.where(windows.length_s >= _WHOLE_S, 1.0, windows.length_s / _WINDOW_S).tolist()
+        for track, length, is_false, is_gross, excess_m in zip(windows.tracks, minutes, *further, strict=True):
+            self.tracks.setdefault(track, _Compared()).count(length, false=is_false, gross=is_gross, excess_m=excess_m)
+        excess_m = np.where(false, np.abs(lengths_m[:, 0] - self.expected * lengths_m[:, 1]), 0.0)
+        if excess_m.size and excess_m.max() > self.excess_m:
+            self.worst, self.excess_m = tuple(lengths_m[excess_m.argmax()].tolist()), float(excess_m.max())
 
     def of(self) -> str | None:
         """How many minutes contradict, in words; None where they are too few."""
-        n, n_false = (sum(getattr(each, name) for each in self.tracks.values()) for name in ("n", "n_false"))
+        minutes, of_these = (sum(getattr(each, name) for each in self.tracks.values()) for name in ("minutes", "false"))
         false = [name for name, each in self.tracks.items() if each.contradict()]
-        if not false and not (0 < n_false == n or (n_false >= _LEAST and n_false >= _LEAST_SHARE * n)):
+        if not false and not (0.5 < of_these == minutes or (of_these >= _LEAST and of_these >= _LEAST_SHARE * minutes)):
             return None
         which = f" ({len(false)} of {len(self.tracks)} tracks, {false[0]} the first of them)" if false and len(self.tracks) > 1 else ""
-        return f"in {n_false} of {n} minutes{which}"
+        return f"in {of_these:.0f} of {minutes:.0f} minutes{which}"
 
 
 class Speeds:
@@ -148,13 +163,13 @@ class Speeds:
         ways = _Ways(rows, _LONGEST_STEP_S)
         speed = rows["_speed"].to_numpy()
         stated_m = 0.5 * (speed[:-1] + speed[1:]) * ways.step_s
-        for at in _windows(rows, rows.height - open_window, ways.sound & np.isfinite(stated_m), ways.step_s):
-            name, by_speed_m = rows["track"][at.start], float(stated_m[at].sum())
-            offset_m, margin_m = ways.margins_m(at)
-            longer = ways.apart_m(at) > _LONGER * by_speed_m + margin_m
-            self._longer.count(name, false=longer, lengths_m=(ways.apart_m(at), by_speed_m))
-            way_m = ways.way_m(at)
-            self._shorter.count(name, false=way_m < _SHORTER * by_speed_m - offset_m, lengths_m=(way_m, by_speed_m))
+        minutes = ways.minutes(rows, rows.height - open_window, ways.sound & np.isfinite(stated_m))
+        by_speed_m = minutes.sums(stated_m)
+        apart_m, way_m = np.hypot(*minutes.apart_en_m.T), minutes.way_m
+        longer = apart_m > _LONGER * by_speed_m + minutes.margin_m
+        shorter = way_m < _SHORTER * by_speed_m - _OFFSET_M
+        self._longer.count(minutes, longer, np.column_stack([apart_m, by_speed_m]))
+        self._shorter.count(minutes, shorter, np.column_stack([way_m, by_speed_m]))
 
     def scatter(self) -> Scatter | None:
         """How far positions scatter along their way, on the track that does so most; None where no track has enough steps."""
@@ -183,46 +198,85 @@ class Speeds:
         return doubts
 
 
+@dataclass(frozen=True)
+class _Minutes:
+    """Windows of up to a minute, and the ways of positions over them.
+
+    `first` and `stop` are the rows that begin the first and end the last step of each.
+    """
+
+    tracks: list[str]
+    length_s: NDArray[np.float64]
+    first: NDArray[np.intp]
+    stop: NDArray[np.intp]
+    apart_en_m: NDArray[np.float64]
+    way_m: NDArray[np.float64]
+    margin_m: NDArray[np.float64]
+
+    def of(self, which: NDArray[np.bool_]) -> _Minutes:
+        """Those that begin at some of the rows."""
+        at = which[self.first]
+        tracks = [track for track, one in zip(self.tracks, at.tolist(), strict=True) if one]
+        return _Minutes(tracks, self.length_s[at], self.first[at], self.stop[at], self.apart_en_m[at], self.way_m[at], self.margin_m[at])
+
+    def sums(self, of_steps: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Sum of the steps of each window."""
+        return _sums(of_steps, self.first, self.stop)
+
+
 class _Ways:
     """Steps between successive rows, and the ways of positions over windows of them."""
 
-    def __init__(self, rows: pl.DataFrame, longest_s: NDArray[np.float64] | float) -> None:
-        self.time_s = (rows["time_ns"] - rows["time_ns"][0]).to_numpy() * 1e-9
-        self.place, self._sigma = rows.select("est_lat_rad", "est_lon_rad").to_numpy(), rows["_sigma"].to_numpy()
-        self.step_s, self.step_m = np.diff(self.time_s), np.hypot(*east_north_m(self.place[:-1], self.place[1:]).T)
+    def __init__(self, rows: pl.DataFrame, longest_s: float) -> None:
+        self._time_ns = rows["time_ns"].to_numpy()
+        self._place, self._sigma = rows.select("est_lat_rad", "est_lon_rad").to_numpy(), rows["_sigma"].to_numpy()
+        self.step_s = np.diff(self._time_ns) * 1e-9
+        self.step_m = np.hypot(*east_north_m(self._place[:-1], self._place[1:]).T)
         track = rows["track"].rle_id().to_numpy()
         self.sound = (track[1:] == track[:-1]) & np.isfinite(self.step_m) & (self.step_s > 0) & (self.step_s <= longest_s)
 
-    def apart_en_m(self, at: slice) -> NDArray[np.float64]:
-        """From the begin of a window to its end."""
-        apart: NDArray[np.float64] = east_north_m(self.place[[at.start]], self.place[[at.stop]])[0]
-        return apart
+    def minutes(self, rows: pl.DataFrame, end: int, sound: NDArray[np.bool_]) -> _Minutes:
+        """Sound steps of one window that follow one another, before a row; a step belongs to the window in which it begins."""
+        of = rows.select(pl.struct("track", "_window").rle_id())["track"].to_numpy()[: min(end, sound.size)].astype(np.int64)
+        of = np.where(sound[: of.size], of, -1)
+        border = np.diff(of, prepend=-1, append=-1) != 0
+        first = np.flatnonzero(border[:-1] & (of >= 0))
+        stop = np.flatnonzero(border[1:] & (of >= 0)) + 1
+        length_s = _sums(self.step_s, first, stop)
+        long = length_s >= _SHORTEST_S
+        first, stop, length_s = first[long], stop[long], length_s[long]
+        noise_m = _DEVIATIONS * np.hypot(self._sigma[first], self._sigma[stop])
+        return _Minutes(
+            tracks=rows["track"].gather(first).to_list(),
+            length_s=length_s,
+            first=first,
+            stop=stop,
+            apart_en_m=east_north_m(self._place[first], self._place[stop]),
+            way_m=np.minimum(_sums(self.step_m, first, stop), self._legs_m(first, stop)),
+            margin_m=_OFFSET_M + noise_m,
+        )
 
-    def apart_m(self, at: slice) -> float:
-        """The same as a length."""
-        return float(np.hypot(*self.apart_en_m(at)))
-
-    def way_m(self, at: slice) -> float:
-        """The way of the positions: over steps or over legs, what is shorter."""
-        legs_m = _legs_m(self.time_s[at.start : at.stop + 1], self.place[at.start : at.stop + 1])
-        return min(float(self.step_m[at].sum()), legs_m)
-
-    def margins_m(self, at: slice) -> tuple[float, float]:
-        """What a difference of speeds explains, and with it the noise of both ends."""
-        offset_m = _OFFSET_MPS * _WINDOW_S
-        return offset_m, offset_m + _DEVIATIONS * float(np.hypot(self._sigma[at.start], self._sigma[at.stop]))
+    def _legs_m(self, first: NDArray[np.intp], stop: NDArray[np.intp]) -> NDArray[np.float64]:
+        """The ways over legs of some seconds, the last of each window as long as it is."""
+        n = stop - first + 1
+        of = np.repeat(np.arange(first.size), n)
+        row = np.arange(of.size) - np.repeat(np.cumsum(n) - n, n) + first[of]
+        leg = (self._time_ns[row] - self._time_ns[first][of]) // _LEG_NS
+        ends = (np.diff(leg, prepend=-1) != 0) | (row == stop[of]) | (row == first[of])
+        of, place = of[ends], self._place[row[ends]]
+        legs_m = np.hypot(*east_north_m(place[:-1], place[1:]).T)
+        within = of[1:] == of[:-1]
+        return np.bincount(of[1:][within], weights=legs_m[within], minlength=first.size).astype(np.float64)
 
 
-def _windows(rows: pl.DataFrame, end: int, sound: NDArray[np.bool_], step_s: NDArray[np.float64]) -> Iterator[slice]:
-    """Steps of each window before a row that are all sound and fill it; a step belongs to the window in which it begins."""
-    of = rows.select(pl.struct("track", "_window").rle_id())["track"].to_numpy()[:end]
-    if of.size == 0:
-        return
-    begins = np.flatnonzero(np.diff(of.astype(np.int64), prepend=-1))
-    for first, behind in zip(begins.tolist(), [*begins[1:].tolist(), of.size], strict=True):
-        at = slice(first, min(behind, step_s.size))
-        if sound[at].all() and step_s[at].sum() >= _WHOLE * _WINDOW_S:
-            yield at
+def _sums(of_steps: NDArray[Any], first: NDArray[np.intp], stop: NDArray[np.intp]) -> NDArray[np.float64]:
+    """Sums of steps over windows, of each apart: NaN in one is none of the next."""
+    if first.size == 0:
+        return np.zeros(0)
+    edges = np.column_stack([first, stop]).ravel()
+    padded = np.append(of_steps.astype(np.float64), 0.0)
+    sums: NDArray[np.float64] = np.add.reduceat(padded, edges)[::2]
+    return sums
 
 
 class _Directions:
@@ -267,19 +321,18 @@ class _Directions:
         stated_m = 0.5 * (speed[:-1] + speed[1:]) * plain.step_s
         stated_en_m, towards_s = stated_m[:, None] * chord, plain.step_s[:, None] * chord
         sound = plain.sound & (plain.step_s <= half_turn_s(own_mps)) & np.isfinite(mean)
-        for at in _windows(rows, rows.height, sound, plain.step_s):
-            if not which[at.start]:
-                continue
-            way_m, by_speed_m = plain.way_m(at), float(stated_m[at].sum())
-            whither_m = stated_en_m[at].sum(axis=0)
-            if not math.isfinite(by_speed_m):
-                by_speed_m, whither_m = way_m, way_m * towards_s[at].sum(axis=0) / plain.step_s[at].sum()
-            aside_m = float(np.hypot(*(plain.apart_en_m(at) - whither_m)))
-            _, margin_m = plain.margins_m(at)
-            beyond_m = aside_m - _ASIDE * by_speed_m - margin_m
-            gross = aside_m > _GROSS * by_speed_m + margin_m and beyond_m > _GROSS_M
-            name = rows["track"][at.start]
-            self._aside.count(name, false=beyond_m > 0.0, lengths_m=(aside_m, by_speed_m), gross=gross, beyond_m=beyond_m)
+        minutes = plain.minutes(rows, rows.height, sound).of(which)
+        by_speed_m, step_s = minutes.sums(stated_m), minutes.sums(plain.step_s)
+        whither_m = np.column_stack([minutes.sums(each) for each in stated_en_m.T])
+        # Without a speed the way of the positions leads in the mean direction.
+        unstated = ~np.isfinite(by_speed_m)
+        towards = np.column_stack([minutes.sums(each) for each in towards_s.T]) / step_s[:, None]
+        by_speed_m = np.where(unstated, minutes.way_m, by_speed_m)
+        whither_m = np.where(unstated[:, None], minutes.way_m[:, None] * towards, whither_m)
+        aside_m = np.hypot(*(minutes.apart_en_m - whither_m).T)
+        beyond_m = aside_m - _ASIDE * by_speed_m - minutes.margin_m
+        gross = (aside_m > _GROSS * by_speed_m + minutes.margin_m) & (beyond_m > _GROSS_M)
+        self._aside.count(minutes, beyond_m > 0.0, np.column_stack([aside_m, by_speed_m]), gross=gross, beyond_m=beyond_m)
 
 
 def _between_statements(rows: pl.DataFrame) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -360,13 +413,6 @@ _CARRIED = (
     .fill_null(float("nan"))
 )
 """The last speed, for as long as a step may be."""
-
-
-def _legs_m(time_s: NDArray[np.float64], place: NDArray[np.float64]) -> float:
-    """The way over legs of some seconds, the last as long as it is."""
-    begins = np.unique(np.searchsorted(time_s, np.arange(time_s[0], time_s[-1], _LEG_S)))
-    ends = np.append(begins, time_s.size - 1)
-    return float(np.hypot(*east_north_m(place[ends[:-1]], place[ends[1:]]).T).sum())
 
 
 def _stated(epochs: pl.DataFrame) -> pl.Expr | None:

@@ -135,6 +135,58 @@ impl Stood {
     }
 }
 
+/// Speed from which an aircraft is not again where it was, to the length of a step, minutes after: one that goes on from where it stood is as
+/// late as it stood. \[m/s\] Provenance: ours.
+const RESUMES_MPS: f64 = 80.0;
+
+/// A hold from which that is known: shorter ones begin with a position that was early where rows are made of others each ten seconds. \[s\]
+/// Provenance: ours.
+const RESUMES_AFTER_S: f64 = 20.0;
+
+/// The last report's place, and how far behind its way by the reported speeds the position is since it went on from where it had stood.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Resumed {
+    /// Latitude \[rad\].
+    pub lat_rad: f64,
+    /// Longitude \[rad\].
+    pub lon_rad: f64,
+    /// \[m\].
+    pub behind_m: f64,
+}
+
+impl Resumed {
+    /// After the next report, whose position is new. `stood_m` is the way by the speeds reported while the one before stood until it was stale.
+    fn after(before: Self, report: &Report, stood_m: Option<f64>, elapsed_s: f64) -> Self {
+        let at = Self { lat_rad: report.lat_rad, lon_rad: report.lon_rad, behind_m: 0.0 };
+        if elapsed_s > RETURNS_S {
+            return at;
+        }
+        let [east, north] = east_north_m([before.lat_rad, before.lon_rad], [report.lat_rad, report.lon_rad]);
+        let (step_m, reported_m) = (hypot(east, north), report.speed_mps * elapsed_s);
+        match stood_m {
+            // Nearer to where a step from there leads than to where the aircraft would be.
+            Some(stood_m)
+                if report.speed_mps >= RESUMES_MPS
+                    && stood_m >= report.speed_mps * RESUMES_AFTER_S
+                    && step_m < reported_m + 0.5 * stood_m =>
+            {
+                Self { behind_m: (before.behind_m + stood_m + reported_m - step_m).max(0.0), ..at }
+            }
+            _ if before.behind_m > 0.0 && !report.speed_mps.is_nan() => {
+                Self { behind_m: (before.behind_m + reported_m - step_m).max(0.0), ..at }
+            }
+            _ => Self { behind_m: before.behind_m, ..at },
+        }
+    }
+
+    /// By how much the position is late \[s\].
+    fn late_s(&self, report: &Report, limits: &Limits) -> Option<f64> {
+        let speed_mps = report.speed_mps.max(limits.moving_mps);
+        let late_s = (self.behind_m - limits.noise_m) / speed_mps;
+        (late_s > limits.stale_after_s).then_some(late_s)
+    }
+}
+
 /// What an aircraft says of its own speed, above all while its position stays the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gone {
@@ -154,6 +206,8 @@ pub struct Gone {
     pub stood: Option<Stood>,
     /// By how much the position is late after a hold \[s\].
     pub late_s: f64,
+    /// Where the last report was, and how late since it went on from where it had stood.
+    pub resumed: Option<Resumed>,
     /// The position has changed.
     pub moved: bool,
     /// How much longer than by their times the reports of a position took to arrive, at least \[s\].
@@ -163,7 +217,8 @@ pub struct Gone {
 impl Default for Gone {
     fn default() -> Self {
         let (way_m, stood_s, crawled_s, late_s) = (0.0, 0.0, 0.0, 0.0);
-        Self { seen: None, way_m, stood_s, braked_mps: f64::NAN, fell: None, owed: None, stood: None, late_s, moved: false, crawled_s }
+        let (fell, owed, stood, resumed) = (None, None, None, None);
+        Self { seen: None, way_m, stood_s, braked_mps: f64::NAN, fell, owed, stood, late_s, resumed, moved: false, crawled_s }
     }
 }
 
@@ -178,6 +233,11 @@ impl Gone {
         let crawls = !self.moved || elapsed_s < FROZEN_SHARE * limits.period_s;
         let waited_s = if crawls { arrival(elapsed_s, limits.period_s) - elapsed_s } else { 0.0 };
         self.crawled_s = if self.seen.is_some() && unchanged { self.crawled_s + waited_s } else { 0.0 };
+        if !unchanged {
+            let stood_m = self.stood.filter(|stood| stood.stale).map(|stood| (self.way_m - stood.early_m).max(0.0));
+            let before = self.resumed.unwrap_or(Resumed { lat_rad: report.lat_rad, lon_rad: report.lon_rad, behind_m: 0.0 });
+            self.resumed = Some(Resumed::after(before, report, stood_m.filter(|_| self.way_m > 0.0), elapsed_s));
+        }
         let (way_m, stood_s) = if unchanged { (self.way_m, self.stood_s) } else { (0.0, 0.0) };
         self.way_m = way_m + if unchanged && speed_mps > STANDS_MPS { speed_mps * passed_s } else { 0.0 };
         self.stood_s = stood_s + if unchanged && speed_mps <= STANDS_MPS { passed_s } else { 0.0 };
@@ -200,13 +260,15 @@ impl Gone {
     }
 
     /// For how long a position stands where no aircraft with its speeds could have stopped \[s\]: since a speed fell that none loses so fast, though
-    /// the position changes, since it owes the way to brake on, or as late as it is after a hold. None where it may be one, or where a receiver is known to stand.
+    /// the position changes, since it owes the way to brake on, or as late as it is after a hold, or since it went on from one. None where it may be one, or where a receiver is known to stand.
     pub fn stands_falsely(&self, report: &Report, limits: &Limits) -> Option<f64> {
         let fell = self.fell.filter(|fall| fall.from_moving).map(|fall| fall.time);
         let owes = self.owed.filter(|_| limits.moving_mps.is_finite()).and_then(|owed| owed.since);
         let lasting = |since: &GpsTime| !within(report.time, *since, limits.stale_after_s);
         let late = (self.late_s > 0.0).then(|| report.time.plus_seconds(-self.late_s));
-        let since = [fell, owes, late].into_iter().flatten().filter(lasting).min()?;
+        let resumed = self.resumed.filter(|_| limits.moving_mps.is_finite()).and_then(|resumed| resumed.late_s(report, limits));
+        let behind = resumed.map(|late_s| report.time.plus_seconds(-late_s));
+        let since = [fell, owes, late, behind].into_iter().flatten().filter(lasting).min()?;
         Some(report.time.seconds_since(since))
     }
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
@@ -59,6 +60,8 @@ _UNDATED = -(2**63)
 _REASON_ID = [None, "position_held", "position_stale", "position_jump", "position_not_settled", "position_late", "position_ahead"]
 """What the core found, by its codes."""
 _JUMP = _REASON_ID.index("position_jump")
+_LEAST_ALONE, _ALONE_SHARE = 10, 0.5
+"""Number and share of positions that are alone, from which nothing is shown. Provenance: ours. [1]"""
 _OLD_SHARE, _SILENT_SHARE = 0.5, 0.05
 """Shares of the rows that state an age, and of the rows that could, from which old positions and silence leave the others doubted. Ours."""
 
@@ -156,6 +159,7 @@ class Checker:
         self._n_steps = self._n_fast = self._n_dated = self._n_rows = self._n_doubted = self._n_twice = 0
         self._largest = self._fastest = self._oldest_s = self._furthest_m = 0.0
         self._ages: dict[str, NDArray[np.int64]] = {}
+        self._n_of: Counter[str] = Counter()
 
     def see(self, epochs: pl.DataFrame) -> None:
         """See the next part of one track that goes on in other pieces."""
@@ -172,6 +176,7 @@ class Checker:
             if not seen:
                 track.see(reports)
             findings = track.judge(reports, _speeds_after(name, after))
+            self._n_of[name] += group.height
             self._see_ages(name, findings["finding"], reports)
             judged.append(findings)
             # Rows are in the order of tracks: only the last one may go on.
@@ -246,6 +251,16 @@ class Checker:
         return Plausibility(*counts, self._n_fast, fastest, self._n_doubted, n_steps, largest, words, self._doubts())
 
     def _doubts(self) -> tuple[str, ...]:
+        return self._doubts_of_ages() + self._doubts_of_lone_rows()
+
+    def _doubts_of_lone_rows(self) -> tuple[str, ...]:
+        """A column that is taken for names of tracks may number the rows."""
+        n_alone = sum(n == 1 for n in self._n_of.values())
+        if n_alone < _LEAST_ALONE or n_alone < _ALONE_SHARE * self._n_rows:
+            return ()
+        return (f"{n_alone} of {self._n_rows} positions are each the only one of its track: no motion can be compared with them",)
+
+    def _doubts_of_ages(self) -> tuple[str, ...]:
         """Ages that a track states now and then say what the age of its other positions is."""
         old = {name: n for name, n in self._ages.items() if n[1] > _OLD_SHARE * n[0] and n[2] > _SILENT_SHARE * (n[0] + n[2])}
         if not old:

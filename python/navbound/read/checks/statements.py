@@ -106,8 +106,8 @@ NO_INTEGRITY = _words("n no none off false")
 AGE = Kind(
     "invalid",
     _words(
-        "age_s position_age position_age_s pos_age pos_age_s fix_age fix_age_s data_age_s seen_pos seconds_since_update "
-        "seconds_since_last_update seconds_since_fix time_since_update_s time_since_fix_s"
+        "age_s position_age position_age_s pos_age pos_age_s fix_age fix_age_s age_of_position age_of_position_s data_age_s seen_pos "
+        "seen_pos_s seconds_since_update seconds_since_last_update seconds_since_fix time_since_update_s time_since_fix_s"
     ),
     frozenset(),
     frozenset(),
@@ -115,6 +115,19 @@ AGE = Kind(
     below=-STALE_AFTER_S,
 )
 """The age of a position, in seconds; it dates the position, too. One that is of the future is of another clock."""
+
+AGE_MS = Kind(
+    "invalid",
+    _words("position_age_ms pos_age_ms fix_age_ms age_of_position_ms seen_pos_ms time_since_fix_ms"),
+    frozenset(),
+    frozenset(),
+    above=1e3 * STALE_AFTER_S,
+    below=-1e3 * STALE_AFTER_S,
+)
+"""The same in milliseconds."""
+
+AGES = ((AGE, 1.0), (AGE_MS, 1e-3))
+"""Kinds of ages, and their units [s]."""
 
 BY_OTHERS = Kind("invalid", own_positions.LISTS, _YES, _words("0 false f no n none off []"), other_against=True)
 """Whether others computed the position."""
@@ -211,6 +224,7 @@ KINDS: tuple[Kind, ...] = (
     # The granular tables of flight trackers: P where there is a position.
     Kind("invalid", _words("no_position no_pos without_position"), _YES | {"n"}, _words("p 0 false no"), other_against=True),
     AGE,
+    AGE_MS,
     # How a position came: what others computed or repeat is none that the aircraft claims anything of.
     Kind(
         "invalid",

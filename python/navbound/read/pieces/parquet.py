@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from navbound.errors import FormatError
-from navbound.read.tables.table import require_few, words_of
+from navbound.read.tables.table import apart, require_few, words_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -36,8 +36,8 @@ def shape(path: Path) -> tuple[int, list[str]]:
     """
     try:
         stated = pl.scan_parquet(path)
-        names = stated.collect_schema().names()
-        require_few(path, len(names))
+        require_few(path, len(stated.collect_schema()))
+        names = apart(stated.head(0).collect()).columns
         return int(stated.select(pl.len()).collect().item()), names
     except (pl.exceptions.PolarsError, OSError) as e:
         raise FormatError(path, f"damaged Parquet file: {words_of(e)}") from e
@@ -57,7 +57,7 @@ def batches(path: Path, n_rows: int) -> Iterator[pl.DataFrame]:
         for batch in pl.scan_parquet(path).collect_batches(chunk_size=n_rows, maintain_order=True):
             seen += batch.height
             for begin in range(0, batch.height, n_rows):
-                yield batch.slice(begin, n_rows)
+                yield apart(batch.slice(begin, n_rows))
     except (pl.exceptions.PolarsError, OSError) as e:
         raise FormatError(path, f"damaged Parquet file: {words_of(e)}") from e
     if seen != total:

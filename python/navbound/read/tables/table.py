@@ -18,6 +18,7 @@ from navbound.read.tables.memory import require_free
 from navbound.storage import packed
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from navbound.read.source import Source
@@ -274,10 +275,24 @@ def _parquet(source: Source) -> Table:
         # Eight bytes a field: a column of one value packs to nothing.
         packed.require_room(source.path, len(source.content), 8 * n_rows * n_columns)
         require_free(source, n_rows)
-        frame = pl.read_parquet(io.BytesIO(source.content))
+        frame = apart(pl.read_parquet(io.BytesIO(source.content)))
     except (pl.exceptions.PolarsError, OSError) as e:
         raise FormatError(source.path, f"damaged Parquet file: {words_of(e)}") from e
     return Table(_counted(frame), Rejections(source.path, "record"), frame.height)
+
+
+def apart(frame: pl.DataFrame) -> pl.DataFrame:
+    """What columns of structures hold, as columns of their own names, or of both where another column has that."""
+    for _ in range(_DEEPEST):
+        structures = [name for name, dtype in frame.schema.items() if dtype == pl.Struct]
+        if not structures:
+            break
+        n_of = Counter([*frame.columns, *(part.name for name in structures for part in frame.schema[name].fields)])  # type: ignore[attr-defined]
+        for name in structures:
+            names = [part.name for part in frame.schema[name].fields]  # type: ignore[attr-defined]
+            named = [each if n_of[each] == 1 else f"{name}.{each}" for each in names]
+            frame = frame.with_columns(pl.col(name).struct.rename_fields(named)).unnest(name)
+    return frame
 
 
 def words_of(error: Exception) -> str:
@@ -360,8 +375,28 @@ def _records(source: Source, data: list[Any]) -> dict[str, list[Any]]:
     """Turn a list of objects into columns; a key that a record lacks is empty there."""
     if not data or not all(isinstance(record, dict) for record in data):
         raise FormatError(source.path, "not a table: a list of records {column: value} is needed")
-    names = dict.fromkeys(name for record in data for name in record)
-    return {name: [record.get(name) for record in data] for name in names}
+    records = [dict(_fields(record)) for record in data]
+    paths = dict.fromkeys(path for record in records for path in record)
+    # What an object inside the records states is a column of its own name, unless another one has it.
+    n_of = Counter(path[-1] for path in paths)
+    names = {path: path[-1] if len(path) == 1 or n_of[path[-1]] == 1 else ".".join(path) for path in paths}
+    repeated = next((name for name, n in Counter(names.values()).items() if n > 1), None)
+    if repeated is not None:
+        raise FormatError(source.path, f"the key “{repeated}” is that of two columns", field=repeated)
+    return {name: [record.get(path) for record in records] for path, name in names.items()}
+
+
+_DEEPEST = 8
+"""Objects within objects whose values are columns; deeper ones are text. [1]"""
+
+
+def _fields(record: dict[str, Any], within: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """The values of an object, and of the objects in it, with the keys that lead to each."""
+    for name, value in record.items():
+        if isinstance(value, dict) and len(within) < _DEEPEST:
+            yield from _fields(value, (*within, name))
+        else:
+            yield (*within, name), value
 
 
 def _series(name: str, values: list[Any]) -> pl.Series:

@@ -161,10 +161,11 @@ class Values:
 
     def _with_age(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
         """The age that a row states of its position, where no column states the time of the position."""
-        ages = [name for name, kind in self._mapping.statements if kind is statements.AGE and not no_field(frame.schema[name])]
+        stated = [(name, kind) for name, kind in self._mapping.statements if not no_field(frame.schema[name])]
+        ages = {name: unit_s for name, kind in stated for of, unit_s in statements.AGES if kind is of}
         if self._dated is not None or not ages:
             return part
-        stated_s = [frame[name].cast(pl.Float64, strict=False).fill_nan(None).alias(name) for name in ages]
+        stated_s = [(frame[name].cast(pl.Float64, strict=False).fill_nan(None) * unit_s).alias(name) for name, unit_s in ages.items()]
         oldest_s = pl.DataFrame(stated_s).max_horizontal()
         return part.with_columns(pl.select(pl.when(oldest_s.is_between(0.0, _OLDEST_S)).then(oldest_s)).to_series().alias(_AGE))
 

@@ -95,10 +95,12 @@ def sort_out(paths: Sequence[str | Path], *, solve: bool = False) -> Files:
     files, room = Files(), KEPT_BYTES
     for path in paths:
         source = load(path)
-        kinds = (_raw(source) if solve else None) or [_kind(source)]
+        raw = _raw(source) if solve else None
+        kinds = raw or [_kind(source)]
         if kinds == ["tables"]:
             source.refuse_unknown()
-        open_end = not source.content.endswith((b"\n", b"\r", b"\x1a")) and source.content[:200].isascii()
+        # Of a receiver's log the text may be the smallest part.
+        open_end = raw is None and not source.content.endswith((b"\n", b"\r", b"\x1a")) and source.content[:200].isascii()
         content = source.content if kinds != ["tables"] and len(source.content) <= room else b""
         room -= len(content)
         kept = Source(source.path, content, source.sha256, source.n_bytes, open_end)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
 import polars as pl
 
 from navbound import gnss
@@ -12,13 +13,16 @@ from navbound.errors import FormatError
 from navbound.gnss.constellation_doubts import contradicting
 from navbound.gnss.files import navigation_of, observations_of
 from navbound.gnss.receivers import unused_words
+from navbound.read import formats
 from navbound.read.checks.places import header_against
 from navbound.read.checks.refusals import of_navigation, of_observations, skipped_words, without_epochs
 from navbound.read.checks.repeats import left_out, separate
 from navbound.read.tables.epochs import Reading
+from navbound.records.material import LEFT_OUT
 from navbound.records.run import Rejection
 from navbound.run.inputs.solving import Solving, require_same_time
 from navbound.status import REASONS
+from navbound.time import utc_text
 
 if TYPE_CHECKING:
     from navbound.read.source import Source
@@ -39,6 +43,38 @@ def solved(files: Files, solving: Solving | None = None) -> list[Reading]:
         readings[0].rejected.extend(of_navigation(navigation))
         readings[0].notes.extend(skipped_words(", ".join(path.name for path in navigation.paths), navigation.skipped))
     return readings
+
+
+_MEASURED_S = 2.0
+"""A position of the receiver itself that has measurements within it, or within a step and a half of theirs, is of one of their epochs.
+Provenance: ours. [s]"""
+
+
+def _unmeasured(source: Source, observations: gnss.Observations) -> tuple[pl.DataFrame, list[str]]:
+    """The times of a log at which its receiver had a position and left no measurements: an epoch that nothing can be solved at."""
+    none: tuple[pl.DataFrame, list[str]] = (pl.DataFrame(schema=LEFT_OUT), [])
+    path, content = source.plain()
+    read = formats.of(content, path.name).read
+    if read is None:
+        return none
+    try:
+        own_ns = read(replace(source, content=content)).epochs["time_ns"].drop_nulls().unique().sort().to_numpy()
+    except FormatError:
+        return none
+    measured_ns = np.unique(observations.time_ns)
+    step_ns = float(np.median(np.diff(measured_ns))) if measured_ns.size > 1 else 0.0
+    beside = np.searchsorted(measured_ns, own_ns)
+    nearest = [measured_ns[np.clip(beside - k, 0, measured_ns.size - 1)] for k in (0, 1)]
+    within_ns = max(_MEASURED_S * 1e9, 1.5 * step_ns)
+    alone_ns = own_ns[np.minimum(*(np.abs(own_ns - each) for each in nearest)) > within_ns]
+    if alone_ns.size == 0:
+        return none
+    times = " to ".join(utc_text(int(time_ns)) for time_ns in (alone_ns[0], alone_ns[-1]))
+    words = (
+        f"{path.name}: at {alone_ns.size} of the {own_ns.size} times at which the receiver itself had a position ({times} UTC) the log "
+        f"holds no measurements within {within_ns * 1e-9:.3g} s: nothing is solved there, and they count as missing"
+    )
+    return left_out(pl.DataFrame({"track": [source.stem] * alone_ns.size, "time_ns": alone_ns})), [words]
 
 
 def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> Reading:
@@ -80,7 +116,9 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
     notes += [f"{source.path.name}: {count} satellite-epochs not used: {gnss.UNUSED[why]}" for why, count in solution.unused.items()]
     # Epochs that cannot be read were measured all the same; nobody knows when.
     unread = pl.DataFrame({"track": [source.stem] * observations.n_lost_epochs, "time_ns": None})
-    lost = pl.concat([left_out(without), left_out(repeats.contradicting), left_out(unread)])
+    unmeasured, words = _unmeasured(source, observations)
+    notes += words
+    lost = pl.concat([left_out(without), left_out(repeats.contradicting), left_out(unread), unmeasured])
     columns = {"est_lat_rad": "solved from " + ", ".join(c for codes in solution.codes.values() for c in codes)}
     return Reading(
         known,

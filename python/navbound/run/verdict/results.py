@@ -113,7 +113,9 @@ def _first(verdict: Verdict, risks: tuple[float, float]) -> str:
         false = refuted_words(verdict.belief) if verdict.belief is not None and (not n or verdict.belief.state == "refuted") else ""
         why = "; ".join(each for each in (beyond, false) if each) or refuted_words(verdict.belief)
         return f"{HEADLINES[verdict.id]}, margins to {verdict.requirement} mean nothing: {why}; {shares}."
-    more = f", and {verdict.n_outside} epochs with status ok or degraded have a bound beyond its limit" if verdict.n_outside else ""
+    # Where every judged epoch is within, those that are outside are degraded: the worst margin beside them is of the judged ones.
+    whose = "degraded epochs" if verdict.share_inside == verdict.share_contained == 1.0 else "epochs with status ok or degraded"
+    more = f", and {verdict.n_outside} {whose} have a bound beyond its limit" if verdict.n_outside else ""
     return (
         f"{HEADLINES[verdict.id]} {verdict.requirement}: the {accuracy} bound is within RNP at {share(verdict.share_inside)} of "
         f"{verdict.n_judged} judged epochs, the {integrity} bound within twice RNP at {share(verdict.share_contained)}{more}; "
