@@ -112,7 +112,7 @@ def make_examples_once(app: Sphinx) -> None:
 
 
 def list_decisions(_app: Sphinx, name: str, source: list[str]) -> None:
-    """Decision records are found from their page: as entries beside every page they would take a fifth of the build, and the reader's eye."""
+    """Decision records are found from their page: beside every page they would be a fifth of the build, and in the way."""
     if name == "decisions":
         records = sorted((ROOT / "docs" / "decisions").glob("*.md"))
         titles = [record.read_text(encoding="utf-8").partition("\n")[0].lstrip("# ") for record in records]
