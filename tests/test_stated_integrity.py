@@ -100,6 +100,8 @@ def test_a_row_that_is_not_valid_by_its_own_recording_is_not_judged(tmp_path: Pa
         ("anomaly", 0, 2),
         ("err_flag", 0, 1),
         ("hil_exceeded", "no", "yes"),
+        ("Integrity failed", 0, 1),
+        ("fix_lost", "false", "true"),
         ("nav_error_detected", 0, 1),
         ("gnss_anomaly", "none", "multipath"),
         ("raim_alert", 0, 1),

@@ -93,7 +93,11 @@ def read(source: Source, name: str) -> Log:
     if log["n_rows"] == 0:
         what = f"a log of kind {name} without a message that positions are read from ({MESSAGES[name]})"
         raise FormatError(source.path, what + _solvable(source))
-    return Log(_epochs(log), log["n_rows"], left_out, log["absent_ns"], log["fields"], _notes(source, log))
+    epochs = _epochs(log)
+    notes = _notes(source, log)
+    if not epochs[COVARIANCE[0]].is_finite().any() and (solvable := _solvable(source)):
+        notes.append(f"{source.path.name}: its positions state no covariance{solvable}")
+    return Log(epochs, log["n_rows"], left_out, log["absent_ns"], log["fields"], notes)
 
 
 def _epochs(fields: dict[str, Any]) -> pl.DataFrame:

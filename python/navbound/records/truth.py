@@ -65,7 +65,8 @@ class TruthDoubts:
             sentences.append(
                 f"Truth is not believable at {self.n_standing} epochs and is not used there: it stands still while the positions travel "
                 f"up to {self.travelled_m:.0f} m on a steady course, by more than their bounds allow. It is the truth of another receiver, "
-                "or the positions are wrong."
+                "the positions are wrong, or its columns are in other units: what is declared of a column holds in both files unless "
+                "it is declared of the truth alone (truth_lat_rad, truth_lon_rad)."
             )
         if self.n_invalid:
             sentences.append(f"Truth is not used at {self.n_invalid} epochs, at which its own recording states that it is not valid.")

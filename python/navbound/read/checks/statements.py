@@ -97,6 +97,11 @@ _ALARM_FLAGS = (
         for word in _ALARMS - {"error", "err"}
         for whose in ("gps", "gnss", "nav", "pos", "position", "is", "integrity", "raim")
     }
+    | {
+        f"{whose}_{word}"
+        for word in ("failed", "fail", "lost", "invalid", "bad", "unreliable", "unusable", "unavailable")
+        for whose in ("gps", "gnss", "nav", "pos", "position", "fix", "solution", "integrity", "raim", "monitor", "receiver", "signal")
+    }
 )
 """Names of flags that are raised against a position. Provenance: ours."""
 
