@@ -107,3 +107,9 @@ def test_a_position_that_goes_on_from_where_it_stood_is_as_late_as_it_stood(tmp_
     assert set(analyzed(tmp_path, at_once).epochs["reason_id"].to_list()[end:]) <= {None, "position_late"}
     later = [row | place(min(k, 600) if k < end else k - hold_s if k < 1000 else k) for k, row in enumerate(table)]
     assert analyzed(tmp_path, later).epochs["reason_id"].to_list()[-100:] == [None] * 100
+
+
+@pytest.mark.parametrize("every_s", [1, 4])
+def test_a_glider_that_circles_steeply_travels_as_far_as_it_says(tmp_path: Path, every_s: int) -> None:
+    """22 degrees a second at 26 m/s are 45 degrees of bank: in ten seconds it has turned by more than half a turn."""
+    assert analyzed(tmp_path, turning(26.0, 22.0, every_s, every_s, 0.0)).summary.verdict.position_doubts == []

@@ -123,21 +123,16 @@ class _Slow:
     def __init__(self, service: Service, recording: StationRecording) -> None:
         self._service, self._recording = service, recording
         self._n = 0
+        self._kinds = _kinds()
         self._delay_m = cache(self._measured_m)
+        records = recording.navigation.records()
+        self._records = list(zip(*(records[name].to_list() for name in ("satellite", "orbit_time_ns", "issue")), strict=True))
 
     def next(self, time_s: int) -> Sent:
         """The next of them, with what is known at its time."""
-        kinds = self._kinds()
-        kind = kinds[self._n % len(kinds)]
+        kind = self._kinds[self._n % len(self._kinds)]
         self._n += 1
         return Sent(time_s, *self._made(kind, time_s))
-
-    def _kinds(self) -> list[tuple[int, int]]:
-        """Kind and part, in turn: the grid once, and all others two times, in two rounds of less than two minutes."""
-        often = [(1, 0), (7, 0), (10, 0), *((25, k) for k in range(len(_MASK) // 4))]
-        grid = [(18, band) for band in _BANDS] + [(26, k) for k in range(len(_blocks()))]
-        half = len(grid) // 2
-        return [*often, *grid[:half], *often, *grid[half:]]
 
     def _made(self, kind: tuple[int, int], time_s: int) -> tuple[int, list[tuple[int, int]]]:
         which, part = kind
@@ -169,10 +164,8 @@ class _Slow:
 
     def _issues(self, time_s: int) -> dict[str, int]:
         """Issue of the record of every satellite that is nearest in time."""
-        records = self._recording.navigation.records()
-        names, times, issues = (records[name].to_list() for name in ("satellite", "orbit_time_ns", "issue"))
         nearest: dict[str, tuple[int, int]] = {}
-        for name, orbit_ns, issue in zip(names, times, issues, strict=True):
+        for name, orbit_ns, issue in self._records:
             nearest[name] = min(nearest.get(name, (2**63, 0)), (abs(orbit_ns - time_s * _NS), issue))
         return {name: issue for name, (_, issue) in nearest.items()}
 
@@ -210,6 +203,15 @@ def _served(band: int, point: tuple[int, int]) -> bool:
     return _FROM[0] <= point[0] <= _TO[0] and _FROM[1] <= point[1] <= _TO[1] and (band == 9 or point[0] <= 55)
 
 
+def _kinds() -> list[tuple[int, int]]:
+    """Kind and part, in turn: the grid once, and all others two times, in two rounds of less than two minutes."""
+    often = [(1, 0), (7, 0), (10, 0), *((25, k) for k in range(len(_MASK) // 4))]
+    grid = [(18, band) for band in _BANDS] + [(26, k) for k in range(len(_blocks()))]
+    half = len(grid) // 2
+    return [*often, *grid[:half], *often, *grid[half:]]
+
+
+@cache
 def _blocks() -> list[tuple[int, int, Points]]:
     """Band, block and points of every message 26."""
     blocks = []

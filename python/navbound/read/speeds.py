@@ -29,6 +29,8 @@ _LONGEST_STEP_S = 10.0
 _LEG_NS = 10_000_000_000
 """Span of a leg of the way that positions travel: the noise of each step would add up to a way of its own. A turn of three degrees a second
 shortens it by one in a hundred. Provenance: ours. [ns]"""
+_SLOW_MPS = 55.0
+"""Below it an aircraft may turn by half a turn within a leg, as a glider does; its legs are half as long. Provenance: ours. [m/s]"""
 _OFFSET_M = 3.0 * _WINDOW_S
 """Difference of ways over a window that shows nothing, 3 m/s: rounding, wind on a filtered track, a slow filter. Provenance: ours. [m]"""
 _LONGER, _SHORTER = 1.5, 0.6
@@ -39,7 +41,9 @@ between rows leave as much. Provenance: ours. [1]"""
 _DEVIATIONS = 6.0
 """Noise of two positions, in standard deviations of the covariance. Provenance: ours."""
 _LEAST, _LEAST_SHARE = 3, 0.2
-"""Minutes of a track, and share of them, that must contradict; of fewer minutes all of a recording. Provenance: ours."""
+"""Minutes of a track, and share of them, that must contradict. Provenance: ours."""
+_OF_SHORT = 0.6
+"""Share of a recording of fewer minutes that must: a part of a minute shows less than it. Provenance: ours. [1]"""
 _WHOLE_S = 45.0
 """A window from this length on is a minute. Provenance: ours. [s]"""
 _RUN = 5
@@ -121,7 +125,8 @@ class _Test:
         """How many minutes contradict, in words; None where they are too few."""
         minutes, of_these = (sum(getattr(each, name) for each in self.tracks.values()) for name in ("minutes", "false"))
         false = [name for name, each in self.tracks.items() if each.contradict()]
-        if not false and not (0.5 < of_these == minutes or (of_these >= _LEAST and of_these >= _LEAST_SHARE * minutes)):
+        short = of_these > 0.5 and of_these >= _OF_SHORT * minutes and minutes < _LEAST
+        if not false and not (short or (of_these >= _LEAST and of_these >= _LEAST_SHARE * minutes)):
             return None
         which = f" ({len(false)} of {len(self.tracks)} tracks, {false[0]} the first of them)" if false and len(self.tracks) > 1 else ""
         return f"in {of_these:.0f} of {minutes:.0f} minutes{which}"
@@ -245,6 +250,7 @@ class _Ways:
         length_s = _sums(self.step_s, first, stop)
         long = length_s >= _SHORTEST_S
         first, stop, length_s = first[long], stop[long], length_s[long]
+        steps_m = _sums(self.step_m, first, stop)
         noise_m = _DEVIATIONS * np.hypot(self._sigma[first], self._sigma[stop])
         return _Minutes(
             tracks=rows["track"].gather(first).to_list(),
@@ -252,16 +258,16 @@ class _Ways:
             first=first,
             stop=stop,
             apart_en_m=east_north_m(self._place[first], self._place[stop]),
-            way_m=np.minimum(_sums(self.step_m, first, stop), self._legs_m(first, stop)),
+            way_m=np.minimum(steps_m, self._legs_m(first, stop, np.where(steps_m < _SLOW_MPS * length_s, _LEG_NS // 2, _LEG_NS))),
             margin_m=_OFFSET_M + noise_m,
         )
 
-    def _legs_m(self, first: NDArray[np.intp], stop: NDArray[np.intp]) -> NDArray[np.float64]:
+    def _legs_m(self, first: NDArray[np.intp], stop: NDArray[np.intp], leg_ns: NDArray[np.int64]) -> NDArray[np.float64]:
         """The ways over legs of some seconds, the last of each window as long as it is."""
         n = stop - first + 1
         of = np.repeat(np.arange(first.size), n)
         row = np.arange(of.size) - np.repeat(np.cumsum(n) - n, n) + first[of]
-        leg = (self._time_ns[row] - self._time_ns[first][of]) // _LEG_NS
+        leg = (self._time_ns[row] - self._time_ns[first][of]) // leg_ns[of]
         ends = (np.diff(leg, prepend=-1) != 0) | (row == stop[of]) | (row == first[of])
         of, place = of[ends], self._place[row[ends]]
         legs_m = np.hypot(*east_north_m(place[:-1], place[1:]).T)
