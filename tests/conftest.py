@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import os
 import sys
 from dataclasses import dataclass
@@ -36,12 +35,6 @@ LONG = ("site", "live_browser", "large_tables", "wheel", "report_browser", "pred
 def pytest_xdist_auto_num_workers() -> int:
     """One worker more than cores: browsers, servers and their clocks are waited for, and the core that would rest has another file."""
     return (os.cpu_count() or 1) + 1
-
-
-def pytest_collection_finish() -> None:
-    """Ten thousand collected tests are no garbage: to look through them again and again would be a twentieth of the time."""
-    gc.collect()
-    gc.freeze()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

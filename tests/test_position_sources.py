@@ -113,7 +113,7 @@ def test_what_an_object_in_a_record_states_is_a_column(tmp_path: Path, kind: str
             assert (run.summary.verdict.id == "inside") == shown
             assert set(run.epochs["status"]) == ({"ok"} if shown else {"not_available"})
         # Of two of one name each keeps the keys that lead to it.
-        assert any("own.track" in words for words in run.summary.assumptions)
+        assert any("message.own.track" in words for words in run.summary.assumptions)
 
 
 def test_a_trace_without_a_source_anywhere_is_reported(tmp_path: Path) -> None:

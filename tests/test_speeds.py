@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import navbound
-from navbound.read.speeds import Speeds, speeds_of
+from navbound.read.motion.speeds import Speeds, speeds_of
 
 N = 400
 M_PER_DEG = math.radians(1.0) * 6_371_000.0

@@ -12,17 +12,18 @@ import polars as pl
 from navbound.errors import ConflictError, InputError
 from navbound.methods import EXTRACTION_LABEL, EXTRACTION_MARK
 from navbound.read.approaches import Gates
-from navbound.read.checks.axes import doubts_of_axes
+from navbound.read.checks.axes import axes_of
 from navbound.read.checks.plausible import Limits, check
 from navbound.read.checks.repeats import left_out, separate
 from navbound.read.covariance import Claimed, claim, words_beside
+from navbound.read.motion.speeds import speeds_of
 from navbound.read.pieces import PIECE_ROWS
-from navbound.read.speeds import speeds_of
 from navbound.read.tables.epochs import Reading, read
 from navbound.read.truth import TOLERANCE_S, truth_of, with_error, with_truth
 from navbound.records.material import Material, Operation
 from navbound.records.run import CovarianceOrigin, Rejection
 from navbound.records.truth import TruthDoubts
+from navbound.run.inputs.doubts import of_motion
 from navbound.run.inputs.files import sort_out
 from navbound.run.inputs.solving import Solving
 from navbound.run.paths import follow_path, path_of, way_of
@@ -174,7 +175,7 @@ def material(
         else words_beside(claimed, _unread(readings))
     )
     speeds = speeds_of(epochs)
-    position_doubts = [*_doubts(readings, decided=truth is not None), *plausibility.doubts, *speeds.doubts(), *doubts_of_axes(epochs)]
+    position_doubts = [*_doubts(readings, decided=truth is not None), *of_motion(plausibility, speeds, axes_of(epochs))]
     truth_doubts, assumptions = TruthDoubts(), [of_covariance, plausibility.words]
     if truth is not None:
         epochs, words, other, truth_doubts = with_truth(epochs, named)

@@ -126,8 +126,8 @@ def _away(move: NDArray[np.float64], reported: NDArray[np.float64]) -> NDArray[n
     return away
 
 
-def doubts_of_axes(epochs: pl.DataFrame) -> list[str]:
-    """The doubts of a whole table, in the order of track and time."""
+def axes_of(epochs: pl.DataFrame) -> Axes:
+    """The comparison of a whole table, in the order of track and time."""
     axes = Axes()
     axes.see(epochs)
-    return axes.words()
+    return axes

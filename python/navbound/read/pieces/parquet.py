@@ -37,7 +37,7 @@ def shape(path: Path) -> tuple[int, list[str]]:
     try:
         stated = pl.scan_parquet(path)
         require_few(path, len(stated.collect_schema()))
-        names = apart(stated.head(0).collect()).columns
+        names = apart(path, stated.head(0).collect()).columns
         return int(stated.select(pl.len()).collect().item()), names
     except (pl.exceptions.PolarsError, OSError) as e:
         raise FormatError(path, f"damaged Parquet file: {words_of(e)}") from e
@@ -57,7 +57,7 @@ def batches(path: Path, n_rows: int) -> Iterator[pl.DataFrame]:
         for batch in pl.scan_parquet(path).collect_batches(chunk_size=n_rows, maintain_order=True):
             seen += batch.height
             for begin in range(0, batch.height, n_rows):
-                yield apart(batch.slice(begin, n_rows))
+                yield apart(path, batch.slice(begin, n_rows))
     except (pl.exceptions.PolarsError, OSError) as e:
         raise FormatError(path, f"damaged Parquet file: {words_of(e)}") from e
     if seen != total:

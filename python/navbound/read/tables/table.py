@@ -7,7 +7,8 @@ import json
 import re
 from collections import Counter
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from functools import reduce
+from typing import TYPE_CHECKING, Any, cast
 
 import polars as pl
 
@@ -18,7 +19,7 @@ from navbound.read.tables.memory import require_free
 from navbound.storage import packed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
     from navbound.read.source import Source
@@ -275,24 +276,43 @@ def _parquet(source: Source) -> Table:
         # Eight bytes a field: a column of one value packs to nothing.
         packed.require_room(source.path, len(source.content), 8 * n_rows * n_columns)
         require_free(source, n_rows)
-        frame = apart(pl.read_parquet(io.BytesIO(source.content)))
+        frame = apart(source.path, pl.read_parquet(io.BytesIO(source.content)))
     except (pl.exceptions.PolarsError, OSError) as e:
         raise FormatError(source.path, f"damaged Parquet file: {words_of(e)}") from e
     return Table(_counted(frame), Rejections(source.path, "record"), frame.height)
 
 
-def apart(frame: pl.DataFrame) -> pl.DataFrame:
-    """What columns of structures hold, as columns of their own names, or of both where another column has that."""
-    for _ in range(_DEEPEST):
-        structures = [name for name, dtype in frame.schema.items() if dtype == pl.Struct]
-        if not structures:
-            break
-        n_of = Counter([*frame.columns, *(part.name for name in structures for part in frame.schema[name].fields)])  # type: ignore[attr-defined]
-        for name in structures:
-            names = [part.name for part in frame.schema[name].fields]  # type: ignore[attr-defined]
-            named = [each if n_of[each] == 1 else f"{name}.{each}" for each in names]
-            frame = frame.with_columns(pl.col(name).struct.rename_fields(named)).unnest(name)
-    return frame
+_DEEPEST = 8
+"""Objects within objects whose values are columns; deeper ones are text. [1]"""
+
+
+def _columns_of(path: Path, keys: Iterable[tuple[str, ...]]) -> dict[tuple[str, ...], str]:
+    """What a value in objects is called, by the keys that lead to it: by the last of them, unless another value has that name."""
+    keys = list(dict.fromkeys(keys))
+    n_of = Counter(each[-1] for each in keys)
+    names = {each: each[-1] if len(each) == 1 or n_of[each[-1]] == 1 else ".".join(each) for each in keys}
+    repeated = next((name for name, n in Counter(names.values()).items() if n > 1), None)
+    if repeated is not None:
+        raise FormatError(path, f"the key “{repeated}” is that of two columns", field=repeated)
+    return names
+
+
+def apart(path: Path, frame: pl.DataFrame) -> pl.DataFrame:
+    """What columns of structures hold, as columns of their own."""
+    leaves = [each for name, dtype in frame.schema.items() for each in _leaves((name,), dtype)]
+    if len(leaves) == frame.width and all(len(each) == 1 for each in leaves):
+        return frame
+    names = _columns_of(path, leaves)
+    within = {each: reduce(lambda of, key: of.struct.field(key), each[1:], pl.col(each[0])) for each in leaves}
+    return frame.select(column.alias(names[each]) for each, column in within.items())
+
+
+def _leaves(keys: tuple[str, ...], dtype: pl.DataType) -> Iterator[tuple[str, ...]]:
+    if isinstance(dtype, pl.Struct) and len(keys) <= _DEEPEST:
+        for part in dtype.fields:
+            yield from _leaves((*keys, part.name), cast("pl.DataType", part.dtype))
+    else:
+        yield keys
 
 
 def words_of(error: Exception) -> str:
@@ -376,18 +396,8 @@ def _records(source: Source, data: list[Any]) -> dict[str, list[Any]]:
     if not data or not all(isinstance(record, dict) for record in data):
         raise FormatError(source.path, "not a table: a list of records {column: value} is needed")
     records = [dict(_fields(record)) for record in data]
-    paths = dict.fromkeys(path for record in records for path in record)
-    # What an object inside the records states is a column of its own name, unless another one has it.
-    n_of = Counter(path[-1] for path in paths)
-    names = {path: path[-1] if len(path) == 1 or n_of[path[-1]] == 1 else ".".join(path) for path in paths}
-    repeated = next((name for name, n in Counter(names.values()).items() if n > 1), None)
-    if repeated is not None:
-        raise FormatError(source.path, f"the key “{repeated}” is that of two columns", field=repeated)
-    return {name: [record.get(path) for record in records] for path, name in names.items()}
-
-
-_DEEPEST = 8
-"""Objects within objects whose values are columns; deeper ones are text. [1]"""
+    names = _columns_of(source.path, (keys for record in records for keys in record))
+    return {name: [record.get(keys) for record in records] for keys, name in names.items()}
 
 
 def _fields(record: dict[str, Any], within: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:

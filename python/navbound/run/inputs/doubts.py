@@ -14,6 +14,15 @@ from navbound.status import USABLE
 if TYPE_CHECKING:
     from collections.abc import Container
 
+    from navbound.read.checks.axes import Axes
+    from navbound.read.checks.plausible import Plausibility
+    from navbound.read.motion.speeds import Speeds
+
+
+def of_motion(plausibility: Plausibility, speeds: Speeds, axes: Axes) -> list[str]:
+    """Why the positions of a recording may not be what they are read as, by their motion, after all epochs."""
+    return [*plausibility.doubts, *speeds.doubts(), *axes.words()]
+
 
 class Doubts:
     """Counts over epochs in the order of track and time.

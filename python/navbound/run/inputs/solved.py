@@ -17,6 +17,7 @@ from navbound.read import formats
 from navbound.read.checks.places import header_against
 from navbound.read.checks.refusals import of_navigation, of_observations, skipped_words, without_epochs
 from navbound.read.checks.repeats import left_out, separate
+from navbound.read.checks.statements import STALE_AFTER_S
 from navbound.read.tables.epochs import Reading
 from navbound.records.material import LEFT_OUT
 from navbound.records.run import Rejection
@@ -45,11 +46,6 @@ def solved(files: Files, solving: Solving | None = None) -> list[Reading]:
     return readings
 
 
-_MEASURED_S = 2.0
-"""A position of the receiver itself that has measurements within it, or within a step and a half of theirs, is of one of their epochs.
-Provenance: ours. [s]"""
-
-
 def _unmeasured(source: Source, observations: gnss.Observations) -> tuple[pl.DataFrame, list[str]]:
     """The times of a log at which its receiver had a position and left no measurements: an epoch that nothing can be solved at."""
     none: tuple[pl.DataFrame, list[str]] = (pl.DataFrame(schema=LEFT_OUT), [])
@@ -65,7 +61,8 @@ def _unmeasured(source: Source, observations: gnss.Observations) -> tuple[pl.Dat
     step_ns = float(np.median(np.diff(measured_ns))) if measured_ns.size > 1 else 0.0
     beside = np.searchsorted(measured_ns, own_ns)
     nearest = [measured_ns[np.clip(beside - k, 0, measured_ns.size - 1)] for k in (0, 1)]
-    within_ns = max(_MEASURED_S * 1e9, 1.5 * step_ns)
+    # A position as old as that is no position; of measurements that are further apart each is of its step.
+    within_ns = max(STALE_AFTER_S * 1e9, 1.5 * step_ns)
     alone_ns = own_ns[np.minimum(*(np.abs(own_ns - each) for each in nearest)) > within_ns]
     if alone_ns.size == 0:
         return none

@@ -13,11 +13,12 @@ from navbound import _core, status
 from navbound.read.checks.axes import Axes
 from navbound.read.checks.plausible import Checker, Limits, Plausibility
 from navbound.read.covariance import Claimed, Claims
+from navbound.read.motion.speeds import Speeds
 from navbound.read.pieces import Frames, PiecedReading, read_pieces
 from navbound.read.pieces.parquet import is_parquet, shape
 from navbound.read.quantities import POSITION_TIME
 from navbound.read.source import LARGE_BYTES, is_text_table
-from navbound.read.speeds import Speeds
+from navbound.run.inputs.doubts import of_motion
 from navbound.run.pieces.flights import Flights
 from navbound.storage.tables import whole_tracks
 from navbound.table.columns import COVARIANCE, HORIZONTAL, VARIANCES
@@ -169,7 +170,7 @@ def in_pieces(path: Path, request: Request) -> InPieces:
         with_levels=frozenset(labels.with_levels),
         period_s=steps.median_s(),
         flights=flights.words(),
-        position_doubts=[*plausibility.doubts, *checks.speeds.doubts(), *checks.axes.words()],
+        position_doubts=of_motion(plausibility, checks.speeds, checks.axes),
         scatter=checks.speeds.scatter(),
         ends=ends.table(),
     )

@@ -1,0 +1,1 @@
+"""Whether recorded positions move as the recording itself says."""
