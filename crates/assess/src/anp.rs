@@ -3,10 +3,10 @@
 //! Matrices come flat and row by row, as Python holds them: four numbers a horizontal covariance, nine a spatial one \[m²\]; means
 //! two or three numbers \[m\]; risks one number an epoch.
 
+use crate::parallel;
 use navbound_core::bound::anp::{accept, radius_law, radius_m};
 use navbound_core::quantity::OutOfDomain;
 use navbound_core::special::radius::{AtRadius, CentredRadius};
-use rayon::prelude::*;
 
 /// What an epoch's argument was refused for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,11 +38,7 @@ pub fn each<T: Copy + Default + Send>(n: usize, item: impl Fn(usize) -> Result<T
 
 fn chunks<T: Copy + Default + Send>(n: usize, fill: impl Fn(usize, &mut [T]) -> Result<(), Refused> + Sync) -> Result<Vec<T>, Refused> {
     let mut out = vec![T::default(); n];
-    let refused = out
-        .par_chunks_mut(CHUNK)
-        .enumerate()
-        .filter_map(|(chunk, part)| fill(chunk * CHUNK, part).err())
-        .min_by_key(|refused| refused.index);
+    let refused = parallel::fill(&mut out, CHUNK, fill).into_iter().find_map(Result::err);
     refused.map_or(Ok(out), Err)
 }
 

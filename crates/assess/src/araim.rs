@@ -2,6 +2,7 @@
 
 use crate::araim_modes::Known;
 use crate::outlook::{Outcome, Outlook, at_desk, predicted, refusal, rows};
+use crate::parallel;
 use nalgebra::Vector3;
 use navbound_core::bound::araim::exclusion::{self, Monitored};
 use navbound_core::bound::araim::modes::MOST_SATELLITES;
@@ -12,8 +13,11 @@ use navbound_core::bound::{NoLevels, Sight};
 use navbound_core::quantity::{Metres, OutOfDomain};
 use navbound_core::signal::Constellation;
 use navbound_path::AtIndex;
-use rayon::prelude::*;
+use pulp::Arch;
 use std::cell::RefCell;
+
+/// Epochs in one task of the pool: each takes tens of microseconds, and a desk is made once.
+const EPOCHS_PER_TASK: usize = 32;
 
 /// Satellites in many solutions: rows are epochs, columns satellites; one whose line of sight is NaN is not used.
 #[derive(Debug, Clone, Copy)]
@@ -70,15 +74,29 @@ impl Worker {
         Self { monitor: Box::default(), known: Known::new(p_const, uniform) }
     }
 
-    /// Levels of satellites; with exclusion the worst of what may be left after one.
-    #[inline(always)]
+    /// Levels of satellites; with exclusion the worst of what may be left after one. In the widest instructions that the processor has:
+    /// they are compiled here alone, once for each width, which takes as long as half of this crate.
+    #[inline(never)]
     fn levels(&mut self, sights: &[Sight], rule: &Rule, exclusion: bool) -> Result<Levels, NoLevels> {
         let Self { monitor, known } = self;
+        let arch = Arch::new();
         match (rule, exclusion) {
-            (Rule::Araim(service), false) => exclusion::detected(monitor, known, sights, service),
-            (Rule::Araim(service), true) => exclusion::predicted(monitor, known, sights, service),
-            (Rule::Raim(requested), false) => monitor.single_levels(sights, requested),
-            (Rule::Raim(requested), true) => monitor.single_levels_after_exclusion(sights, requested),
+            (Rule::Araim(service), false) => arch.dispatch(
+                #[inline(always)]
+                || exclusion::detected(monitor, known, sights, service),
+            ),
+            (Rule::Araim(service), true) => arch.dispatch(
+                #[inline(always)]
+                || exclusion::predicted(monitor, known, sights, service),
+            ),
+            (Rule::Raim(requested), false) => arch.dispatch(
+                #[inline(always)]
+                || monitor.single_levels(sights, requested),
+            ),
+            (Rule::Raim(requested), true) => arch.dispatch(
+                #[inline(always)]
+                || monitor.single_levels_after_exclusion(sights, requested),
+            ),
         }
     }
 }
@@ -102,14 +120,12 @@ impl Desk {
     }
 
     /// Levels of a row's satellites.
-    #[inline(always)]
     fn row(&mut self, sights: &Sights<'_>, row: usize, rule: &Rule, exclusion: bool) -> Result<Row, OutOfDomain> {
         self.take(sights, row, |_| ());
         Row::of(self.sights.len(), self.worker.levels(&self.sights, rule, exclusion))
     }
 
     /// Take up a row's satellites; `each` receives the column of every one.
-    #[inline(always)]
     fn take(&mut self, sights: &Sights<'_>, row: usize, mut each: impl FnMut(usize)) {
         self.sights.clear();
         for (column, constellation) in sights.constellation.iter().enumerate() {
@@ -139,11 +155,7 @@ impl Desk {
 /// [`AtIndex`]: the first epoch with a number outside its domain.
 pub fn levels(sights: &Sights<'_>, rule: &Rule, exclusion: bool) -> Result<Vec<Row>, AtIndex> {
     let request = Requested { rule: *rule, p_const: sights.p_const, p_sat: priors(sights) };
-    // One closure, compiled once; the attribute may stand on an argument alone.
-    let epoch = core::convert::identity(
-        #[inline(always)]
-        |desk: &mut Desk, row: usize| desk.row(sights, row, rule, exclusion),
-    );
+    let epoch = |desk: &mut Desk, row: usize| desk.row(sights, row, rule, exclusion);
     if sights.len() > 1 {
         return rows(sights.len(), || request.desk(), epoch);
     }
@@ -196,12 +208,9 @@ pub fn monitored(sights: &Sights<'_>, residual_m: &[f64], service: &Service) -> 
         let excluded = columns.iter().enumerate().filter(|(i, _)| out(*i)).map(|(_, c)| *c).collect();
         Ok(Tested { outcome: Outcome::of(&monitored.levels), monitored: Some(monitored), excluded })
     };
-    (0..sights.len())
-        .into_par_iter()
-        .map_init(
-            || (Desk::new(sights.p_const, uniform), Vec::new(), Vec::new()),
-            |desk, index| each(desk, index).map_err(|error| AtIndex { index, error }),
-        )
+    let desk = || (Desk::new(sights.p_const, uniform), Vec::new(), Vec::new());
+    parallel::map_with(sights.len(), EPOCHS_PER_TASK, desk, |desk, index| each(desk, index).map_err(|error| AtIndex { index, error }))
+        .into_iter()
         .collect()
 }
 
@@ -224,7 +233,6 @@ pub fn predict(outlook: &Outlook<'_>, rule: &Rule, exclusion: bool) -> Result<Ve
     predicted(
         outlook,
         || Worker::new(outlook.promise.support.map(|s| s.p_const), true),
-        #[inline(always)]
         |worker, sights| worker.levels(sights, rule, exclusion),
     )
 }

@@ -1,8 +1,8 @@
 //! One loop for all batches: items of equal cost, results in order, the first refusal named by its index.
 
+use crate::parallel;
 use navbound_core::quantity::{OutOfDomain, Risk};
 use navbound_core::special::folded::FoldedQuantile;
-use rayon::prelude::*;
 
 /// Items below which one thread is quicker than waking the others.
 pub const PARALLEL_FROM: usize = 65_536;
@@ -75,8 +75,7 @@ pub fn chunks<const M: usize>(n: usize, fill: impl Fn(usize, &mut [f64]) -> Resu
     let refused = if n < PARALLEL_FROM {
         out.chunks_mut(CHUNK * M).enumerate().find_map(|(k, chunk)| fill(k * CHUNK, chunk).err())
     } else {
-        let each = out.par_chunks_mut(CHUNK * M).enumerate();
-        each.filter_map(|(k, chunk)| fill(k * CHUNK, chunk).err()).min_by_key(|r| r.index)
+        parallel::fill(&mut out, CHUNK * M, |first, chunk| fill(first / M, chunk)).into_iter().find_map(Result::err)
     };
     refused.map_or(Ok(out), Err)
 }

@@ -1,10 +1,10 @@
 //! Any method of [`navbound_core::bound::METHODS`] over the columns of an epoch table.
 
+use crate::parallel;
 use navbound_core::bound::{Bound, Method};
 use navbound_core::frame::{Covariance, Enu};
 use navbound_core::judge::Sample;
 use navbound_core::quantity::{GpsTime, Metres, Radians, Reason, Risk, Status, Unavailable};
-use rayon::prelude::*;
 
 /// Epochs in one task of the pool: enough work (above 0.1 ms) to be worth the hand-over.
 const EPOCHS_PER_TASK: usize = 1024;
@@ -83,11 +83,9 @@ pub struct Refused {
 
 /// Bounds of every row by one method at one risk, on all cores. The result does not depend on their number.
 pub fn bounds(columns: &Columns<'_>, method: &'static Method, risk: Risk) -> BoundColumn {
-    let results: Vec<Result<f64, Unavailable>> = (0..columns.len)
-        .into_par_iter()
-        .with_min_len(EPOCHS_PER_TASK)
-        .map(|row| Bound::of(method, &columns.sample(row).epoch(), risk).map(|bound| bound.length().m()))
-        .collect();
+    let results: Vec<Result<f64, Unavailable>> = parallel::map(columns.len, EPOCHS_PER_TASK, |row| {
+        Bound::of(method, &columns.sample(row).epoch(), risk).map(|bound| bound.length().m())
+    });
     let mut reasons: Vec<Refused> = Vec::new();
     let mut reason = Vec::with_capacity(results.len());
     let mut bound_m = Vec::with_capacity(results.len());

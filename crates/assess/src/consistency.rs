@@ -2,6 +2,7 @@
 
 use crate::error::navigation_error;
 use crate::fusion::{Driver, Plan};
+use crate::parallel;
 use nalgebra::{Matrix3, Vector3};
 use navbound_core::bound::anp::{circle, sphere};
 use navbound_core::frame::{Geodetic, LatLon, radii};
@@ -9,7 +10,6 @@ use navbound_core::monitor::separation::Verdict;
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians, Risk};
 use navbound_core::solution::ins::{Attitude, Beside, Fusion, Innovations, Kind, Mode, NavState, Settings, Solution, StartSigma};
 use navbound_simulate::{Motion, Sensing};
-use rayon::prelude::*;
 
 /// What a flight's results say of the filter, after the time that is left out.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -89,7 +89,7 @@ pub struct Trial {
 /// [`OutOfDomain`] as [`Sensing::flight`] and [`Fusion::new`], of the first flight that fails.
 pub fn flights(sensing: &Sensing, seed: u64, first: u64, starts: &[[f64; 9]], trial: &Trial) -> Result<Vec<Judged>, OutOfDomain> {
     let numbered: Vec<_> = (first..).zip(starts).collect();
-    numbered.into_par_iter().map(|(number, normals)| flight(sensing, seed, number, normals, trial)).collect()
+    parallel::try_map(numbered.len(), 1, |k| flight(sensing, seed, numbered[k].0, numbered[k].1, trial))
 }
 
 fn flight(sensing: &Sensing, seed: u64, number: u64, normals: &[f64; 9], trial: &Trial) -> Result<Judged, OutOfDomain> {

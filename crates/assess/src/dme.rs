@@ -1,6 +1,7 @@
 //! DME/DME and VOR/DME over many epochs: positions, what a flight would have, what a network covers.
 
 use crate::batch::Rejected;
+use crate::parallel;
 use navbound_core::bound::anp::circle;
 use navbound_core::frame::{Covariance, Enu, Geodetic, LatLon};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians, Risk};
@@ -8,7 +9,6 @@ use navbound_core::solution::dme::{
     Admission, Altitude, Best, Checked, Figure, Fix, Horizon, NoFix, Pair, Place, Prior, Range, RangeModel, Selector, Sight, Station,
     Switching, Verdict, VorRange, all_in_view, best_pair, solve_checked, vor_dme, vor_fix,
 };
-use rayon::prelude::*;
 
 /// Items a thread takes at a time: about a millisecond of work.
 const CHUNK: usize = 64;
@@ -287,6 +287,6 @@ pub fn coverage(points: &Places, stations: &[Station], models: &Models, risk: Ri
 
 /// Items on all cores, results in order, the first refusal named.
 fn many<T: Send>(n: usize, item: impl Fn(usize) -> Result<T, OutOfDomain> + Sync) -> Result<Vec<T>, Rejected> {
-    let outcomes: Vec<_> = (0..n).into_par_iter().with_min_len(CHUNK).map(&item).collect();
+    let outcomes: Vec<_> = parallel::map(n, CHUNK, item);
     outcomes.into_iter().enumerate().map(|(index, outcome)| outcome.map_err(|reason| Rejected { index, reason })).collect()
 }

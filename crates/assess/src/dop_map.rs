@@ -3,6 +3,7 @@
 //! Satellites are placed once an instant for all users. What differs from [`crate::sky`] is the way, not the formula: directions stay
 //! vectors, so that a satellite costs some multiplications and no angle.
 
+use crate::parallel;
 use nalgebra::{Matrix3, Vector3};
 use navbound_core::frame::{Geodetic, LatLon, ecef_from_geodetic, enu_from_ecef};
 use navbound_core::geometry::{Elements, Orbit};
@@ -11,8 +12,10 @@ use navbound_core::signal::Constellation;
 use navbound_core::solution::wls;
 use navbound_path::AtIndex;
 use pulp::Arch;
-use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
+
+/// Users at instants in one task of the pool: each takes a microsecond.
+const INSTANTS_PER_TASK: usize = 4096;
 
 /// Users as a structure of arrays of one length.
 #[derive(Debug, Clone, Copy)]
@@ -117,24 +120,23 @@ fn fill(places: &[Place], instants: &[Instant], systems: &[Constellation], mask:
     let mut out = Dops { hdop: column(), vdop: column(), pdop: column(), gdop: column(), n_sv: vec![0; n] };
     let arch = Arch::new();
     let sine = mask.rad().sin();
-    let columns = (
-        places,
-        out.hdop.par_chunks_mut(width),
-        out.vdop.par_chunks_mut(width),
-        out.pdop.par_chunks_mut(width),
-        out.gdop.par_chunks_mut(width),
-        out.n_sv.par_chunks_mut(width),
-    );
-    columns.into_par_iter().for_each_init(Desk::default, |desk, (place, hdop, vdop, pdop, gdop, n_sv)| {
-        let mut row = Row { hdop, vdop, pdop, gdop, n_sv };
-        for (t, instant) in instants.iter().enumerate() {
-            arch.dispatch(
-                #[inline(always)]
-                || epoch(desk, place, instant, systems, sine * sine.abs()),
-            );
-            row.put(t, desk);
+    let dops = out.hdop.chunks_mut(width).zip(out.vdop.chunks_mut(width)).zip(out.pdop.chunks_mut(width)).zip(out.gdop.chunks_mut(width));
+    let rows = dops.zip(out.n_sv.chunks_mut(width)).map(|((((hdop, vdop), pdop), gdop), n_sv)| Row { hdop, vdop, pdop, gdop, n_sv });
+    let mut rows: Vec<Row<'_>> = rows.collect();
+    let size = INSTANTS_PER_TASK.div_ceil(width);
+    parallel::fill(&mut rows, size, |first, rows| {
+        let mut desk = Desk::default();
+        for (place, row) in places[first..].iter().zip(rows) {
+            for (t, instant) in instants.iter().enumerate() {
+                arch.dispatch(
+                    #[inline(always)]
+                    || epoch(&mut desk, place, instant, systems, sine * sine.abs()),
+                );
+                row.put(t, &desk);
+            }
         }
     });
+    drop(rows);
     out
 }
 

@@ -1,6 +1,7 @@
 //! Error Extraction over whole series: the filter and its bound, epoch after epoch; series on all cores.
 
 use crate::batch::Rejected;
+use crate::parallel;
 use crate::sky::{Sights, Solved, solve};
 use navbound_core::bound::ee::noise::{self, Meter};
 use navbound_core::bound::ee::{Both, NotIntegrity, bias};
@@ -9,7 +10,6 @@ use navbound_core::quantity::{GpsTime, Metres, OutOfDomain};
 use navbound_core::solution::extraction::{self, Extracted, Filter, Reset, Sample, gain};
 use navbound_core::solution::wls::{dilution, responses};
 use navbound_path::AtIndex;
-use rayon::prelude::*;
 
 /// Series of equal length, one after the other; `xyz` arrays hold three numbers an epoch, east, north, up.
 #[derive(Debug, Clone, Copy)]
@@ -78,8 +78,7 @@ const ABSENT: Row = Row {
 pub fn extract(series: &Series<'_>, settings: &Settings) -> Result<Vec<Row>, Rejected> {
     let n = series.time_ns.len();
     let starts: Vec<usize> = (0..n).step_by(series.epochs.max(1)).collect();
-    let parts = starts.into_par_iter().map(|start| one(series, start, settings));
-    Ok(parts.collect::<Result<Vec<_>, _>>()?.concat())
+    Ok(parallel::try_map(starts.len(), 1, |track| one(series, starts[track], settings))?.concat())
 }
 
 fn one(series: &Series<'_>, start: usize, settings: &Settings) -> Result<Vec<Row>, Rejected> {

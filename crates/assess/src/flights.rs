@@ -1,9 +1,9 @@
 //! Many flights of one scenario on all cores, as columns of the epoch table.
 
 use crate::fused::MODES;
+use crate::parallel;
 use navbound_core::quantity::OutOfDomain;
 use navbound_simulate::{Doubt, FlownEpoch, Outlook, fly};
-use rayon::prelude::*;
 
 /// Epochs of flights, one after the other.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,15 +94,19 @@ fn sigma_bias(epoch: &FlownEpoch, sensor: usize, axis: usize) -> f64 {
     epoch.inside.and_then(|i| i.sigma_biases).map_or(f64::NAN, |b| b[sensor][axis])
 }
 
+/// Flights `first .. first + count` on all cores.
+pub(crate) fn numbered<T: Send>(first: u64, count: u64, fly: impl Fn(u64) -> Result<T, OutOfDomain> + Sync) -> Result<Vec<T>, OutOfDomain> {
+    let count = usize::try_from(first.saturating_add(count) - first).unwrap_or(usize::MAX);
+    parallel::try_map(count, 1, |k| fly(first + k as u64))
+}
+
 impl Flights {
     /// Flights `first .. first + count`, each a function of scenario, seed and its number, whatever the threads.
     ///
     /// # Errors
     /// As [`fly`].
     pub fn fly(outlook: &Outlook, seed: u64, first: u64, count: u64) -> Result<Self, OutOfDomain> {
-        let epochs =
-            (first..first.saturating_add(count)).into_par_iter().map(|number| fly(outlook, seed, number)).collect::<Result<_, _>>()?;
-        Ok(Self { epochs, first })
+        Ok(Self { epochs: numbered(first, count, |number| fly(outlook, seed, number))?, first })
     }
 
     pub(crate) fn of(epochs: Vec<Vec<FlownEpoch>>, first: u64) -> Self {

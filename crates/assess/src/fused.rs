@@ -7,7 +7,7 @@
 
 use crate::consistency::{attitude, wrong_start};
 use crate::error::navigation_error;
-use crate::flights::Flights;
+use crate::flights::{Flights, numbered};
 use crate::fusion::{Driver, Plan};
 use crate::stations::Doubting;
 use nalgebra::Vector3;
@@ -21,7 +21,6 @@ use navbound_core::solution::ins::{Fusion, Innovations, Kind, Mode, NavState, Sa
 use navbound_simulate::{
     Doubt, ERROR_FREE, FlownEpoch, Inside, Motion, Navigated, Navigator, SensedFlight, Sensing, Step, Trajectory, fly_by,
 };
-use rayon::prelude::*;
 
 /// Flights, and what their filters say of themselves.
 #[derive(Debug, Clone)]
@@ -51,8 +50,7 @@ impl Fused {
     /// # Errors
     /// [`OutOfDomain`] for a scenario without a filter, or as [`Sensing::flight`].
     pub fn fly(sensing: &Sensing, seed: u64, first: u64, count: u64) -> Result<Self, OutOfDomain> {
-        let numbers = (first..first.saturating_add(count)).into_par_iter();
-        let flown: Vec<_> = numbers.map(|number| flight(sensing, seed, number)).collect::<Result<_, _>>()?;
+        let flown = numbered(first, count, |number| flight(sensing, seed, number))?;
         let (epochs, verdicts): (_, Vec<_>) = flown.into_iter().unzip();
         Ok(Self { flights: Flights::of(epochs, first), verdicts: verdicts.concat() })
     }

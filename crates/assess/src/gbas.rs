@@ -1,5 +1,6 @@
 //! GBAS protection levels of many skies.
 
+use crate::parallel;
 use navbound_core::bound::Sight;
 use navbound_core::bound::gbas::aided::Tracked;
 use navbound_core::bound::gbas::bias::Ordering;
@@ -13,7 +14,9 @@ use navbound_core::quantity::{Metres, OutOfDomain, Radians, Unavailable};
 use navbound_core::signal::Constellation;
 use navbound_core::spec::gbas::ErrorModel;
 use navbound_path::AtIndex;
-use rayon::prelude::*;
+
+/// Skies in one task of the pool.
+const SKIES_PER_TASK: usize = 32;
 
 /// Satellites of many skies, one row a sky and one column a satellite; both angles NaN for one that is not used.
 #[derive(Debug, Clone, Copy)]
@@ -95,7 +98,7 @@ impl Skies<'_> {
 /// # Errors
 /// [`AtIndex`] for the first number outside its domain, counted through all rows.
 pub fn protection_levels(skies: &Skies<'_>, request: &Request<'_>) -> Result<Vec<Counted>, AtIndex> {
-    (0..skies.len()).into_par_iter().map(|sky| one(skies, request, sky)).collect()
+    parallel::try_map(skies.len(), SKIES_PER_TASK, |sky| one(skies, request, sky))
 }
 
 /// Satellites used, and the answer.

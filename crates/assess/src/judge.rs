@@ -1,12 +1,12 @@
 //! Loops over [`navbound_core::judge`]: an epoch table of many tracks, in pieces of any length.
 
 use crate::bounds::{self, Refused, at, reason_code};
+use crate::parallel;
 use navbound_core::bound::{Bound, Method};
 use navbound_core::judge::{Errors, Evaluated, Judge, Judged, Sample, Settings};
 use navbound_core::monitor::rnp::{Alert, Counters, Event};
 use navbound_core::quantity::encoding::BadBytes;
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Status, Unavailable};
-use rayon::prelude::*;
 
 /// Rows in one task of the pool.
 const ROWS_PER_TASK: usize = 1024;
@@ -19,7 +19,7 @@ pub type Errs<'a> = [Option<&'a [f64]>; 3];
 /// Errors of every row.
 pub fn errors(columns: &bounds::Columns<'_>, nse_m: Errs<'_>) -> Vec<Errors> {
     let of = |row| with_truth(columns.sample(row), nse_m, row).errors();
-    (0..columns.len).into_par_iter().with_min_len(ROWS_PER_TASK).map(of).collect()
+    parallel::map(columns.len, ROWS_PER_TASK, of)
 }
 
 fn with_truth(sample: Sample, [east, north, up]: Errs<'_>, row: usize) -> Sample {
@@ -226,7 +226,7 @@ impl Judges {
         }
         for method in &self.plan.beside {
             let bounds = |row| self.plan.beside(method, &columns.sample(row));
-            let (accuracy, integrity) = (0..n).into_par_iter().with_min_len(ROWS_PER_TASK).map(|row| bounds(row).into()).unzip();
+            let (accuracy, integrity) = parallel::map(n, ROWS_PER_TASK, |row| bounds(row).into()).into_iter().unzip();
             piece.numbers.extend([accuracy, integrity]);
         }
         Ok(piece)
@@ -236,7 +236,7 @@ impl Judges {
     fn block(&mut self, columns: &Columns<'_>, rows: core::ops::Range<usize>, piece: &mut Piece) -> Result<(), OutOfDomain> {
         let settings = &self.plan.settings;
         let evaluate = |row| settings.evaluate(&columns.sample(row));
-        let evaluated: Vec<Evaluated> = rows.clone().into_par_iter().with_min_len(ROWS_PER_TASK).map(evaluate).collect();
+        let evaluated: Vec<Evaluated> = parallel::map(rows.len(), ROWS_PER_TASK, |k| evaluate(rows.start + k));
         for (row, evaluated) in rows.zip(evaluated) {
             let track = columns.track[row];
             let Some(judge) = self.tracks.get_mut(track as usize) else {

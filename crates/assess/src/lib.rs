@@ -23,6 +23,7 @@ pub mod judged;
 pub mod kpi;
 pub mod monitor;
 pub mod outlook;
+mod parallel;
 pub mod plausible;
 pub mod positions;
 pub mod raim;

@@ -1,6 +1,6 @@
 //! Protection levels of many users at many instants, from orbits, by any algorithm.
 
-use crate::batch::CHUNK;
+use crate::parallel;
 use nalgebra::{Matrix3, Vector3};
 use navbound_core::bound::araim::modes::NoModes;
 use navbound_core::bound::araim::ranging::{Airborne, Beyond};
@@ -12,7 +12,9 @@ use navbound_core::quantity::{Metres, OutOfDomain, Radians, Reason, Unavailable}
 use navbound_core::signal::Constellation;
 use navbound_path::AtIndex;
 use pulp::Arch;
-use rayon::prelude::*;
+
+/// Epochs in one task of the pool.
+const EPOCHS_PER_TASK: usize = 256;
 
 /// Why an epoch has no finite levels; the order is that of [`Outcome::WORDS`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -171,11 +173,11 @@ impl<'a> Overhead<'a> {
             return Err(at(index)(OutOfDomain { argument: "h_m", value, unit: "m", domain: "finite heights" }));
         }
         let orbits = outlook.orbits.iter().enumerate().map(|(k, e)| Orbit::new(*e).map_err(at(k))).collect::<Result<Vec<_>, _>>()?;
-        let sky = |t: &f64| orbits.iter().map(|orbit| *orbit.position(*t).vector()).collect::<Vec<_>>();
+        let sky = |t: f64| orbits.iter().map(|orbit| *orbit.position(t).vector()).collect::<Vec<_>>();
         let place = |u: &Geodetic| Place { position_m: *ecef_from_geodetic(u).vector(), enu: enu_from_ecef(&u.point) };
         Ok(Self {
             outlook,
-            positions: outlook.time_s.par_iter().flat_map_iter(sky).collect(),
+            positions: parallel::map(outlook.time_s.len(), 64, |k| sky(outlook.time_s[k])).concat(),
             places: outlook.users.iter().map(place).collect(),
             sin_mask: outlook.mask.rad().sin(),
         })
@@ -186,16 +188,23 @@ impl<'a> Overhead<'a> {
         self.outlook.time_s.len() * self.places.len()
     }
 
-    /// Satellites of one user and instant, instants first.
-    #[inline(always)]
-    fn each(&self, index: usize, mut each: impl FnMut(Sight)) {
+    /// Satellites of one user and instant, instants first, with the widest instructions that the processor has.
+    fn put(&self, index: usize, sights: &mut Vec<Sight>) {
         let (instant, user) = (index / self.places.len(), index % self.places.len());
         let n = self.outlook.orbits.len();
-        for (position, constellation) in self.positions[instant * n..(instant + 1) * n].iter().zip(self.outlook.constellation) {
-            if let Some(sight) = seen(position, *constellation, &self.places[user], self.sin_mask, self.outlook) {
-                each(sight);
-            }
-        }
+        let positions = &self.positions[instant * n..(instant + 1) * n];
+        sights.clear();
+        Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                // A plain loop: an iterator's closure would be compiled for the least processor.
+                for (position, constellation) in positions.iter().zip(self.outlook.constellation) {
+                    if let Some(sight) = seen(position, *constellation, &self.places[user], self.sin_mask, self.outlook) {
+                        sights.push(sight);
+                    }
+                }
+            },
+        );
     }
 }
 
@@ -208,12 +217,7 @@ where
     A::Settings: Sync,
     A::Detail: Send,
 {
-    predicted(
-        outlook,
-        || Box::new(A::new(settings)),
-        #[inline(always)]
-        |algorithm, sights| algorithm.levels(sights),
-    )
+    predicted(outlook, || Box::new(A::new(settings)), |algorithm, sights| algorithm.levels(sights))
 }
 
 /// Levels by an algorithm of the list, and the numbers beside them in the order in which it names them; NaN where there are no levels.
@@ -249,7 +253,6 @@ impl Task for Predict<'_> {
 }
 
 /// The same by anything that makes levels of satellites.
-#[inline(always)]
 pub(crate) fn predicted<M: Send, D: Send>(
     outlook: &Outlook<'_>,
     make: impl Fn() -> M + Sync + Send,
@@ -259,10 +262,8 @@ pub(crate) fn predicted<M: Send, D: Send>(
     rows(
         overhead.len(),
         || (make(), Vec::new()),
-        #[inline(always)]
         |(made, sights), index| {
-            sights.clear();
-            overhead.each(index, |sight| sights.push(sight));
+            overhead.put(index, sights);
             Row::of(sights.len(), levels(made, sights))
         },
     )
@@ -290,12 +291,8 @@ pub(crate) fn rows<D: Send, T: Send>(
     desk: impl Fn() -> D + Sync + Send,
     epoch: impl Fn(&mut D, usize) -> Result<T, OutOfDomain> + Sync,
 ) -> Result<Vec<T>, AtIndex> {
-    let chunk = CHUNK.min(256);
-    if n <= chunk {
-        return worked(&mut desk(), 0..n, &epoch);
-    }
     let done: Result<Vec<Vec<T>>, AtIndex> =
-        (0..n.div_ceil(chunk)).into_par_iter().map_init(desk, |desk, k| worked(desk, k * chunk..n.min((k + 1) * chunk), &epoch)).collect();
+        parallel::parts(n, EPOCHS_PER_TASK, |span| worked(&mut desk(), span, &epoch)).into_iter().collect();
     Ok(done?.into_iter().flatten().collect())
 }
 
@@ -304,36 +301,10 @@ pub(crate) fn at_desk<D, T>(desk: &mut D, n: usize, epoch: impl Fn(&mut D, usize
     worked(desk, 0..n, &epoch)
 }
 
-/// Some epochs with the widest instructions that the processor has. Not inlined: every epoch is compiled for each width, which is most of the
-/// time to build this crate, and once for all who call it is enough.
-#[inline(never)]
-fn worked<D, T, F>(desk: &mut D, span: std::ops::Range<usize>, epoch: &F) -> Result<Vec<T>, AtIndex>
-where
-    F: Fn(&mut D, usize) -> Result<T, OutOfDomain>,
-{
-    Arch::new().dispatch(Job { desk, span, epoch })
-}
-
-/// One chunk as a job for [`Arch::dispatch`], which compiles it once for each width of instructions.
-struct Job<'a, D, F> {
-    desk: &'a mut D,
-    span: std::ops::Range<usize>,
-    epoch: &'a F,
-}
-
-impl<D, T, F: Fn(&mut D, usize) -> Result<T, OutOfDomain>> pulp::NullaryFnOnce for Job<'_, D, F> {
-    type Output = Result<Vec<T>, AtIndex>;
-
-    #[inline(always)]
-    fn call(self) -> Self::Output {
-        // A plain loop: an iterator's closure would be compiled for the least processor.
-        let mut rows = Vec::with_capacity(self.span.len());
-        for index in self.span {
-            match (self.epoch)(self.desk, index) {
-                Ok(row) => rows.push(row),
-                Err(error) => return Err(AtIndex { index, error }),
-            }
-        }
-        Ok(rows)
-    }
+fn worked<D, T>(
+    desk: &mut D,
+    span: core::ops::Range<usize>,
+    epoch: impl Fn(&mut D, usize) -> Result<T, OutOfDomain>,
+) -> Result<Vec<T>, AtIndex> {
+    span.map(|index| epoch(desk, index).map_err(|error| AtIndex { index, error })).collect()
 }

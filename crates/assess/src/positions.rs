@@ -1,5 +1,6 @@
 //! Observations and navigation messages to positions, epoch by epoch on all cores.
 
+use crate::parallel;
 use crate::receivers::heard::{Heard, Listed};
 use crate::receivers::phases::Compare;
 use crate::receivers::ranges::{Records, Source, Tally, Unused, plans};
@@ -20,7 +21,6 @@ use navbound_core::solution::point::{self, Fix, Offsets, Range, Settings, Used};
 use navbound_core::solution::rivals::Rival;
 use navbound_formats::precise::Precise;
 use navbound_formats::rinex::{Dated, Navigation, Observations};
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Epochs in one task of the pool: about 0.5 ms of work. The first of them begins from nothing, each other from the position before it,
@@ -120,26 +120,25 @@ pub fn positions(observations: &Observations, navigation: &Navigation, precise: 
     let smoothed = smoothed(observations, &plans, job);
     let source = Source { observations, smoothed: smoothed.as_ref(), records: &records, plans: &plans };
     let solver = Solver { source: &source, job };
-    let epochs: Vec<usize> = (0..observations.n_epochs()).collect();
-    let task = |epochs: &[usize]| {
+    let task = |epochs: core::ops::Range<usize>| {
         let (mut ranges, mut beyond, mut last, mut tally) = (Vec::new(), Vec::new(), None, Tally::listing(job.keep_ranges));
-        let solve = |epoch: &usize| {
-            source.collect(*epoch, &mut ranges, &mut beyond, &mut tally);
-            let mut solved = solver.solve(*epoch, &ranges, last.as_ref(), &Offsets::default());
+        let solve = |epoch: usize| {
+            source.collect(epoch, &mut ranges, &mut beyond, &mut tally);
+            let mut solved = solver.solve(epoch, &ranges, last.as_ref(), &Offsets::default());
             solved.listed = job.keep_ranges.then(|| Listed { ranges: ranges.clone(), unused: tally.take_listed() });
             let n_low = solved.fix.as_ref().map_or(0, |f| ranges.len().saturating_sub(f.n_used + f.n_excluded));
             tally.leave(Unused::BelowMask, n_low);
             last = solved.fix.as_ref().ok().map(|f: &Fix| ecef_from_geodetic(&f.position)).or(last);
             solved
         };
-        (epochs.iter().map(solve).collect::<Vec<_>>(), tally)
+        (epochs.map(solve).collect::<Vec<_>>(), tally)
     };
-    let outcomes: Vec<_> = epochs.par_chunks(EPOCHS_PER_TASK).map(task).collect();
+    let outcomes = parallel::parts(observations.n_epochs(), EPOCHS_PER_TASK, task);
     let smoothed_share = smoothed.as_ref().map(Smoothed::share);
     let undescribed = job.signals == Signals::Single && !job.settings.ionosphere.is_described();
     let (codes, signals) = (codes(&plans, observations), names(&plans));
     let mut solution = Positions { codes, signals, smoothed_share, undescribed, ..Positions::default() };
-    let mut solved = Vec::with_capacity(epochs.len());
+    let mut solved = Vec::with_capacity(observations.n_epochs());
     for (part, tally) in outcomes {
         solved.extend(part);
         solution.tally.add(&tally);
@@ -203,8 +202,11 @@ impl Solver<'_> {
             .map(follow)
             .filter(|(epoch, t)| t.leaves_out() || t.offsets.several() && solved[*epoch].few())
             .collect();
-        let again = |(epoch, treatment): &(usize, Treatment)| self.again(*epoch, treatment, &solved[*epoch]);
-        let treated: Vec<Option<(usize, Solved)>> = treatments.par_iter().map(again).collect();
+        let again = |k: usize| {
+            let (epoch, treatment) = &treatments[k];
+            self.again(*epoch, treatment, &solved[*epoch])
+        };
+        let treated: Vec<Option<(usize, Solved)>> = parallel::map(treatments.len(), EPOCHS_PER_TASK, again);
         let mut left_out = 0;
         for ((epoch, _), treated) in treatments.iter().zip(treated) {
             if let Some((n, better)) = treated {
@@ -324,21 +326,26 @@ pub fn each_epoch<D, T: Send>(
     let plans = plans(observations, &records, &job.systems, job.signals);
     let smoothed = smoothed(observations, &plans, job);
     let source = Source { observations, smoothed: smoothed.as_ref(), records: &records, plans: &plans };
-    let task = |epochs: &[usize]| {
+    let task = |epochs: core::ops::Range<usize>| {
         let (mut desk, mut ranges, mut beyond, mut tally) = (desk(), Vec::new(), Vec::new(), Tally::default());
-        let one = |epoch: &usize| {
-            source.collect(*epoch, &mut ranges, &mut beyond, &mut tally);
-            each(&mut desk, observations.time[*epoch], (&ranges, &beyond), &mut tally)
+        let one = |epoch: usize| {
+            source.collect(epoch, &mut ranges, &mut beyond, &mut tally);
+            each(&mut desk, observations.time[epoch], (&ranges, &beyond), &mut tally)
         };
-        let results: Vec<T> = epochs.iter().map(one).collect();
+        let results: Vec<T> = epochs.map(one).collect();
         (results, tally)
     };
-    let epochs: Vec<usize> = (0..observations.n_epochs()).collect();
-    let outcomes: Vec<_> = epochs.par_chunks(EPOCHS_PER_TASK).map(task).collect();
+    let outcomes = parallel::parts(observations.n_epochs(), EPOCHS_PER_TASK, task);
     let smoothed_share = smoothed.as_ref().map(Smoothed::share);
     let (signals, tally, led_off) = (names(&plans), Tally::default(), Vec::new());
-    let mut watch =
-        Watch { epochs: Vec::with_capacity(epochs.len()), tally, signals, smoothed_share, comparisons: Comparisons::default(), led_off };
+    let mut watch = Watch {
+        epochs: Vec::with_capacity(observations.n_epochs()),
+        tally,
+        signals,
+        smoothed_share,
+        comparisons: Comparisons::default(),
+        led_off,
+    };
     for (results, tally) in outcomes {
         watch.epochs.extend(results);
         watch.tally.add(&tally);

@@ -1,6 +1,7 @@
 //! RRAIM protection levels of many coasting phases.
 
 use crate::gbas::{Skies, covariance, size_of_bias};
+use crate::parallel;
 use navbound_core::bound::Sight;
 use navbound_core::bound::faults::NoModes;
 use navbound_core::bound::gbas::snapshot::{Form, Snapshot};
@@ -13,7 +14,9 @@ use navbound_core::frame::{Covariance, Enu};
 use navbound_core::geometry::Direction;
 use navbound_core::quantity::{Metres, Radians, Unavailable};
 use navbound_path::AtIndex;
-use rayon::prelude::*;
+
+/// Skies in one task of the pool: each takes a tenth of a millisecond and more.
+const SKIES_PER_TASK: usize = 4;
 
 /// Skies at the fix, and the same satellites now: both angles NaN for one that was lost.
 #[derive(Debug, Clone, Copy)]
@@ -115,7 +118,9 @@ impl Room {
 /// # Errors
 /// [`AtIndex`] for the first number outside its domain.
 pub fn protection_levels(coasting: &Coasting<'_>, request: &Request<'_>) -> Result<Vec<Result<Answer, Unavailable>>, AtIndex> {
-    (0..coasting.fix.len()).into_par_iter().map_init(Room::default, |room, sky| one(coasting, request, sky, room)).collect()
+    parallel::map_with(coasting.fix.len(), SKIES_PER_TASK, Room::default, |room, sky| one(coasting, request, sky, room))
+        .into_iter()
+        .collect()
 }
 
 /// Satellites of a sky that were followed until now, by their columns.

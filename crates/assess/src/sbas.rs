@@ -5,6 +5,8 @@
 
 pub mod positions;
 
+use crate::parallel;
+use core::ops::Range;
 use navbound_core::bound::sbas::model::{Airborne, RangeError};
 use navbound_core::bound::sbas::service::{Orbit, Service};
 use navbound_core::bound::sbas::terms::{RangeSigmas, RangeTerms};
@@ -18,7 +20,6 @@ use navbound_core::signal::{Carrier, Constellation, Ephemeris, Klobuchar, Satell
 use navbound_core::solution::wls::{self, WeightedSight};
 use navbound_formats::rinex::Navigation;
 use navbound_formats::sbas::Received;
-use rayon::prelude::*;
 
 /// Fewest users and epochs that a task gets: below, replaying the messages costs more than the second core saves.
 const LEAST_TASK: usize = 256;
@@ -209,10 +210,10 @@ fn each<T: Send>(
 ) -> Result<Vec<T>, (usize, OutOfDomain)> {
     let mut order: Vec<usize> = (0..requests.len()).collect();
     order.sort_by_key(|i| requests[*i].time);
-    let tasks = rayon::current_num_threads().max(1);
-    let size = requests.len().div_ceil(tasks).max(LEAST_TASK);
+    let size = requests.len().div_ceil(parallel::threads()).max(LEAST_TASK);
     let orbits = Orbits::new(navigation);
-    let work = |part: &[usize]| {
+    let work = |part: Range<usize>| {
+        let part = &order[part];
         let mut task = Task {
             listener: Listener::new(feed, settings.obedience, orbits.klobuchar),
             orbits: &orbits,
@@ -226,7 +227,7 @@ fn each<T: Send>(
         }
         Ok(kept)
     };
-    let parts: Result<Vec<Vec<(usize, T)>>, _> = order.par_chunks(size).map(work).collect();
+    let parts: Result<Vec<Vec<(usize, T)>>, _> = parallel::parts(order.len(), size, work).into_iter().collect();
     let mut kept: Vec<(usize, T)> = parts?.into_iter().flatten().collect();
     kept.sort_by_key(|(i, _)| *i);
     Ok(kept.into_iter().map(|(_, t)| t).collect())

@@ -1,5 +1,6 @@
 //! Satellite geometry at many epochs: where the satellites stand, and what covariance follows.
 
+use crate::parallel;
 use nalgebra::Vector3;
 use navbound_core::frame::{Geodetic, LatLon, ecef_from_geodetic, enu_from_ecef};
 use navbound_core::geometry::{Direction, Elements, LineOfSight, Observer, Orbit};
@@ -7,7 +8,9 @@ use navbound_core::quantity::{Metres, OutOfDomain, Radians, Unavailable};
 use navbound_core::signal::Constellation;
 use navbound_core::solution::wls;
 use navbound_path::AtIndex;
-use rayon::prelude::*;
+
+/// Epochs in one task of the pool: each takes microseconds.
+const EPOCHS_PER_TASK: usize = 64;
 
 /// Receiver positions and times as a structure of arrays of one length.
 #[derive(Debug, Clone, Copy)]
@@ -54,10 +57,8 @@ pub fn directions(orbits: &[Elements], at: &Receivers<'_>) -> Result<Sky, AtInde
         .enumerate()
         .map(|(index, e)| Orbit::new(*e).map_err(|error| AtIndex { index, error }))
         .collect::<Result<Vec<_>, _>>()?;
-    let rows = (0..at.time_s.len())
-        .into_par_iter()
-        .map(|index| row(&orbits, at, index).map_err(|error| AtIndex { index, error }))
-        .collect::<Result<Vec<_>, _>>()?;
+    let rows =
+        parallel::try_map(at.time_s.len(), EPOCHS_PER_TASK, |index| row(&orbits, at, index).map_err(|error| AtIndex { index, error }))?;
     let mut sky = Sky::default();
     for direction in rows.into_iter().flatten() {
         sky.az_rad.push(direction.azimuth().rad());
@@ -119,13 +120,10 @@ pub fn solve<T: Send>(sights: &Sights<'_>, solve: impl Fn(&[LineOfSight]) -> Res
         .enumerate()
         .map(|(index, &c)| Constellation::from_index(c).ok_or_else(|| AtIndex { index, error: unknown(c) }))
         .collect::<Result<Vec<_>, _>>()?;
-    (0..sights.az_rad.len().checked_div(width).unwrap_or(0))
-        .into_par_iter()
-        .map(|epoch| {
-            let used = used(sights, &constellations, epoch * width)?;
-            Ok((used.len(), solve(&used)))
-        })
-        .collect()
+    parallel::try_map(sights.az_rad.len().checked_div(width).unwrap_or(0), EPOCHS_PER_TASK, |epoch| {
+        let used = used(sights, &constellations, epoch * width)?;
+        Ok((used.len(), solve(&used)))
+    })
 }
 
 /// Covariances, see [`wls::covariance`].

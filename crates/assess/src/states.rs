@@ -1,8 +1,8 @@
 //! The RNP-state classifier over many epochs.
 
+use crate::parallel;
 use navbound_core::monitor::state::{PerState, StateTable, decide};
 use navbound_core::quantity::{Metres, OutOfDomain};
-use rayon::prelude::*;
 
 /// Epochs in one task of the pool: enough work to be worth the hand-over.
 const EPOCHS_PER_TASK: usize = 4096;
@@ -11,8 +11,10 @@ const EPOCHS_PER_TASK: usize = 4096;
 pub fn rows(n: usize, table: &StateTable, formula: impl Fn(usize) -> PerState + Sync) -> Vec<f64> {
     let n_states = table.n_states();
     let mut out = vec![0.0; n * n_states];
-    out.par_chunks_mut(n_states).with_min_len(EPOCHS_PER_TASK).enumerate().for_each(|(row, slot)| {
-        slot.copy_from_slice(&formula(row)[..n_states]);
+    parallel::fill(&mut out, EPOCHS_PER_TASK * n_states, |first, some| {
+        for (row, slot) in (first / n_states..).zip(some.chunks_mut(n_states)) {
+            slot.copy_from_slice(&formula(row)[..n_states]);
+        }
     });
     out
 }
@@ -35,12 +37,12 @@ pub fn try_rows(
 
 /// Decisions: the most likely guarded state where the table is ordered, otherwise the threshold rule.
 pub fn classes(table: &StateTable, ordered: bool, nse_m: &[f64], prior: &PerState) -> Vec<i64> {
-    let class = |x: &f64| {
-        let nse = Metres::new(*x);
+    let class = |row: usize| {
+        let nse = Metres::new(nse_m[row]);
         let class = if ordered { decide(table, &table.ln_posterior(nse, prior), nse) } else { table.threshold_class(nse) };
         class as i64
     };
-    nse_m.par_iter().with_min_len(EPOCHS_PER_TASK).map(class).collect()
+    parallel::map(nse_m.len(), EPOCHS_PER_TASK, class)
 }
 
 /// Probabilities epoch by epoch, each remembering the one before.

@@ -1,6 +1,7 @@
 //! The grid of the surface-movement study: geometries by coasting times by sub-phases by sizes of the nominal bias.
 
 use crate::gbas::{Skies, covariance};
+use crate::parallel;
 use crate::rraim::Room;
 use navbound_core::bound::gbas::range::carrier_sigma;
 use navbound_core::bound::gbas::snapshot::Snapshot;
@@ -12,7 +13,9 @@ use navbound_core::geometry::Direction;
 use navbound_core::quantity::{Metres, OutOfDomain, Radians};
 use navbound_core::spec::gbas::CarrierModel;
 use navbound_path::AtIndex;
-use rayon::prelude::*;
+
+/// Skies in one task of the pool: each takes a tenth of a millisecond and more.
+const SKIES_PER_TASK: usize = 4;
 
 /// What one sub-phase asks.
 #[derive(Debug, Clone, Copy)]
@@ -64,7 +67,7 @@ pub type Cell = [f64; 3];
 /// [`AtIndex`] for the first number outside its domain.
 pub fn cells(grid: &Grid<'_>) -> Result<Vec<Cell>, AtIndex> {
     let rows: Result<Vec<Vec<Cell>>, AtIndex> =
-        (0..grid.fix.len()).into_par_iter().map_init(Room::default, |room, sky| of_sky(grid, sky, room)).collect();
+        parallel::map_with(grid.fix.len(), SKIES_PER_TASK, Room::default, |room, sky| of_sky(grid, sky, room)).into_iter().collect();
     Ok(rows?.concat())
 }
 

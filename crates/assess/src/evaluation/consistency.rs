@@ -2,12 +2,12 @@
 
 use super::correlation::{by_track, effective_size_of_series};
 use super::{INTERVAL_RISK, track_length};
+use crate::parallel;
 use navbound_core::frame::{Covariance, Displacement, Enu};
 use navbound_core::monitor::consistency::{integral_transform, normalised_square, normalised_square_horizontal};
 use navbound_core::quantity::{Metres, OutOfDomain};
 use navbound_core::special::beta::beta_quantile;
 use navbound_core::special::gamma::chi_square_factor;
-use rayon::prelude::*;
 
 /// Epochs in one task of the pool.
 const EPOCHS_PER_TASK: usize = 4096;
@@ -103,8 +103,7 @@ impl Errors<'_> {
 
     /// Normalised squares, NaN where there is none.
     pub(super) fn squares(&self) -> Vec<f64> {
-        let rows = (0..self.len()).into_par_iter().with_min_len(EPOCHS_PER_TASK);
-        rows.map(|row| self.square(row).unwrap_or(f64::NAN)).collect()
+        parallel::map(self.len(), EPOCHS_PER_TASK, |row| self.square(row).unwrap_or(f64::NAN))
     }
 }
 
@@ -158,8 +157,9 @@ pub(super) fn pit_of(mut squares: Vec<Vec<f64>>, dimension: usize, n_bins: usize
     if !(2..=1000).contains(&n_bins) {
         return Err((None, OutOfDomain { argument: "n_bins", value: n_bins as f64, unit: "1", domain: "[2, 1000]" }));
     }
-    squares.par_iter_mut().for_each(|track| {
-        track.par_iter_mut().with_min_len(EPOCHS_PER_TASK).for_each(|s| *s = integral_transform(*s, dimension));
+    let transform = |_, some: &mut [f64]| some.iter_mut().for_each(|s| *s = integral_transform(*s, dimension));
+    parallel::fill(&mut squares, 1, |_, tracks| {
+        tracks.iter_mut().for_each(|track| drop(parallel::fill(track, EPOCHS_PER_TASK, transform)))
     });
     // A transform that does not exist is no epoch.
     squares.iter_mut().for_each(|track| track.retain(|u| !u.is_nan()));

@@ -4,8 +4,8 @@ use super::epoch::{Columns, Epoch, Refused, Settings};
 use super::runs::Stretch;
 use super::select::Selector;
 use super::tally::Tally;
+use crate::parallel;
 use navbound_core::quantity::OutOfDomain;
-use rayon::prelude::*;
 
 /// Epochs of one tally; a constant, so that sums do not depend on the number of threads.
 const CHUNK: usize = 16_384;
@@ -111,7 +111,7 @@ impl Campaign {
         let (epochs, repeated) = columns.epochs(&self.settings.grid, self.tally.span.map(|(_, last)| last))?;
         self.n_repeated += repeated;
         let settings = &self.settings;
-        let parts: Vec<Tally> = epochs.par_chunks(CHUNK).map(|chunk| tally_of(chunk, settings)).collect();
+        let parts: Vec<Tally> = parallel::parts(epochs.len(), CHUNK, |part| tally_of(&epochs[part], settings));
         for part in parts {
             self.tally.append(part, settings);
         }

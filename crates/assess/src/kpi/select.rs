@@ -6,8 +6,8 @@
 use super::epoch::{Columns, Epoch, HPE, HPL, Refused, Settings, VPE, VPL};
 use super::spread::Axis;
 use super::tally::Tally;
+use crate::parallel;
 use navbound_core::quantity::OutOfDomain;
-use rayon::prelude::*;
 
 /// Percentiles, in thousandths.
 pub const PERMILLE: [u64; 4] = [500, 950, 990, 999];
@@ -64,7 +64,7 @@ impl Selector {
         let (epochs, _) = columns.epochs(&self.settings.grid, self.last)?;
         self.last = epochs.last().map(|e| e.slot).or(self.last);
         let (shift, settings) = (SHIFTS[self.pass.min(SHIFTS.len() - 1)], &self.settings);
-        self.columns.par_iter_mut().for_each(|column| column.count(&epochs, shift, settings));
+        parallel::fill(&mut self.columns, 1, |_, columns| columns.iter_mut().for_each(|column| column.count(&epochs, shift, settings)));
         Ok(())
     }
 

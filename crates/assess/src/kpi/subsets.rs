@@ -1,15 +1,16 @@
 //! The Stanford-ESA diagram: every subset of an epoch's satellites is a point with an error and a protection level of its own.
 
 use super::{Histogram, Regions};
+use crate::parallel;
+use core::ops::Range;
 use navbound_core::bound::sbas;
 use navbound_core::quantity::{GpsTime, Unavailable};
 use navbound_core::signal::sbas::timeout::Use;
 use navbound_core::solution::subsets::{RangeInError, Subset, count, walk};
-use rayon::prelude::*;
 use std::cmp::Ordering;
 
 /// Fewest epochs in one task of the pool: a few milliseconds of work with ten satellites.
-const LEAST_TASK: usize = 64;
+const EPOCHS_PER_TASK: usize = 64;
 
 /// What is required of the subsets.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,14 +93,16 @@ pub type Epoch<'a> = (GpsTime, &'a [RangeInError]);
 /// # Errors
 /// The epoch's place among those given, and [`Unavailable::Invalid`], where a range is no range.
 pub fn subsets(epochs: &[Epoch<'_>], job: &Job) -> Result<Tally, (usize, Unavailable)> {
-    let none = || Tally::none(job);
-    // Sums of counts and an order without ties: how the pool cuts the epochs changes nothing.
-    let all = epochs.par_iter().enumerate().with_min_len(LEAST_TASK);
-    let one = |mut tally: Tally, (index, (time, ranges)): (usize, &Epoch<'_>)| {
-        tally.epoch(*time, ranges, job).map_err(|e| (index, e))?;
+    // Sums of counts and an order without ties: how the epochs are cut changes nothing.
+    let part = |span: Range<usize>| {
+        let mut tally = Tally::none(job);
+        for index in span {
+            let (time, ranges) = epochs[index];
+            tally.epoch(time, ranges, job).map_err(|e| (index, e))?;
+        }
         Ok(tally)
     };
-    all.try_fold(none, one).try_reduce(none, |a, b| Ok(a.merged(b, job)))
+    parallel::parts(epochs.len(), EPOCHS_PER_TASK, part).into_iter().try_fold(Tally::none(job), |all, part| Ok(all.merged(part?, job)))
 }
 
 /// How many of `n` satellites may be left out so that the subsets are no more than those of `most_satellites`.

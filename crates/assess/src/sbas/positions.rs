@@ -1,8 +1,10 @@
 //! A receiver's own positions with a service's corrections, each with the levels of that very solution, epoch by epoch on all cores.
 
 use super::{Feed, Listener, Orbits, Settings};
+use crate::parallel;
 use crate::positions::earlier;
 use crate::smoothing::{self, Form, Smoothed};
+use core::ops::Range;
 use navbound_core::bound::sbas::position::{Measurement, Receiver, Solution, solve};
 use navbound_core::bound::sbas::service::{Service, ranging};
 use navbound_core::bound::sbas::{NoLevel, Sky};
@@ -14,7 +16,6 @@ use navbound_core::signal::sbas::timeout::Use;
 use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Carrier, Constellation, SPEED_OF_LIGHT_MPS};
 use navbound_formats::rinex::{Navigation, Observations};
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Fewest epochs of a task: below, replaying the messages costs more than the second core saves.
@@ -87,16 +88,16 @@ pub fn positions(
         smoothing::smooth(observations, &codes, Form::Single, how)
     });
     let orbits = Orbits::new(navigation);
-    let epochs: Vec<usize> = (0..observations.n_epochs()).collect();
-    let size = epochs.len().div_ceil(rayon::current_num_threads().max(1)).max(LEAST_TASK);
-    let work = |part: &[usize]| {
+    let n = observations.n_epochs();
+    let size = n.div_ceil(parallel::threads()).max(LEAST_TASK);
+    let work = |part: Range<usize>| {
         let listener = Listener::new(feed, settings.obedience, orbits.klobuchar);
         let table = Table { observations, smoothed: smoothed.as_ref(), code };
         let mut task = Task { listener, orbits: &orbits, settings, table, last: None, sky: Sky::default(), unused: BTreeMap::new() };
-        let fixes: Vec<_> = part.iter().map(|epoch| task.epoch(*epoch)).collect();
+        let fixes: Vec<_> = part.map(|epoch| task.epoch(epoch)).collect();
         (fixes, task.unused)
     };
-    let parts: Vec<_> = epochs.par_chunks(size).map(work).collect();
+    let parts = parallel::parts(n, size, work);
     let mut corrected = Corrected { smoothed_share: smoothed.as_ref().map(Smoothed::share), ..Corrected::default() };
     for (fixes, unused) in parts {
         corrected.fixes.extend(fixes);
