@@ -368,10 +368,11 @@ class Reasons:
 
     n_contradicted: int
     codes: dict[str, list[str]]
+    of_others: str | None = None
 
     @property
     def epochs(self) -> pl.DataFrame:
-        ids = ["residuals_contradict"] * self.n_contradicted + [None] * (100 - self.n_contradicted)
+        ids = ["residuals_contradict"] * self.n_contradicted + [self.of_others] * (100 - self.n_contradicted)
         return pl.DataFrame({"est_lat_rad": [0.5] * 100, "reason_id": ids, "status": ["degraded" if id_ else "ok" for id_ in ids]})
 
 
@@ -388,6 +389,13 @@ def test_a_constellation_is_named_only_where_one_alone_settles_it(alone: dict[st
     doubts = contradicting(Reasons(80, codes), lambda letters: Reasons(alone[letters], codes))  # type: ignore[arg-type, return-value]
     assert [words in each for each in doubts if words] == ([True] if words else [])
     assert contradicting(Reasons(20, codes), {}.__getitem__) == []  # type: ignore[arg-type]
+
+
+def test_ranges_without_one_to_spare_contradict_nobody() -> None:
+    """Four ranges of Galileo have no residual: that nothing speaks against them blames nobody else."""
+    codes = {letter: ["C1C"] for letter in "GE"}
+    untested = {letter: Reasons(0, codes, "no_redundancy") for letter in "GE"}
+    assert contradicting(Reasons(40, codes), untested.__getitem__) == []  # type: ignore[arg-type]
 
 
 def test_a_healthy_station_has_no_constellation_in_doubt() -> None:

@@ -266,6 +266,7 @@ def test_state_vectors_in_si_are_not_taken_for_feet(tmp_path: Path) -> None:
         (b'{"latitude": [1], "longitude": [1, 2]}', "columns of 1 and 2 items"),
         (b'{"time": [1], "latitude": [[1]], "longitude": [1]}', "holds List(Int64)"),
         (b"[" * 200_000, "nested too deeply"),
+        (b'[{"time": 1, "lat": 1, "lon": 2, "icao24": "\\ud800"}]', "half of a character: \\ud800"),
         (b"time,time,lat,lon\n1,2,3,4\n", "named twice"),
         (b'{"timestamp": 1, "trace": [[1, 2]]}', "not a readsb trace"),
         (b"%  GPST latitude(deg)\n", "the columns after 'latitude(deg)'"),
@@ -356,6 +357,16 @@ def test_a_unit_that_is_not_known_is_no_other(tmp_path: Path, name: str) -> None
 def test_a_device_is_no_file() -> None:
     with pytest.raises(FormatError, match="a device, not a file"):
         read("/dev/zero")
+
+
+def test_objects_within_objects_without_end_are_text(tmp_path: Path) -> None:
+    """A type of 300 levels took minutes."""
+    deep = "0"
+    for _ in range(300):
+        deep = f'{{"a": {deep}}}'
+    rows = ", ".join(f'{{"time": {1764300000 + k}, "lat": {49 + 1e-3 * k}, "lon": 2.5, "nac_p": 9, "x": {deep}}}' for k in range(30))
+    (tmp_path / "a.json").write_text(f"[{rows}]")
+    assert read(tmp_path / "a.json").epochs.height == 30
 
 
 @pytest.mark.parametrize("text", ['[{"time": 1, "time": 2, "lat": 1, "lon": 2}]', '{"time": [1], "lat": [1], "lon": [2], "lat": [3]}'])

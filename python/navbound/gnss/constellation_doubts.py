@@ -36,7 +36,8 @@ def contradicting(solution: Positions, solve: Callable[[str], Positions]) -> lis
     if len(letters) < 2 or share <= _MOST:
         return []
     without = {letter: _shares(solve("".join(each for each in letters if each != letter))) for letter in letters}
-    settling = [letter for letter in letters if without[letter][0] <= _REMAINS * share]
+    # Where nothing is ok without it, nothing was tested: ranges without one to spare contradict nobody.
+    settling = [letter for letter in letters if without[letter][0] <= _REMAINS * share and without[letter][1] > 0.0]
     if not settling:
         return []
     seen = f"the residuals speak against {share:.0%} of the solved epochs"

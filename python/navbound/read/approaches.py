@@ -160,6 +160,7 @@ def seek(epochs: Table, runways: Sequence[Runway] | None = None, gates: Gates | 
     approaches = _with_ends(named, points.filter(~pl.col("gated")), gates)
     used = [r for r in runways if r.name in set(approaches["runway_name"])]
     tracks = dict(approaches.select("approach", "track").iter_rows())
+    notes += _elsewhere_words(epochs, set(tracks.values()))
     return Landings(approaches, _statistics(segments), used, tracks, notes, lost.height, _due(named, gates))
 
 
@@ -334,6 +335,19 @@ def _lost_words(lost: pl.DataFrame, names: list[str]) -> list[str]:
     ]
     more = f"; and {lost.height - _PASSES_NAMED} more" if lost.height > _PASSES_NAMED else ""
     return [f"{lost.height} passes along a runway's centreline are not judged as approaches: {'; '.join(shown)}{more}."]
+
+
+def _elsewhere_words(epochs: Table, landed: set[str]) -> list[str]:
+    """Tracks that are not judged at all: a departure, or one that left the centreline before an approach could be seen."""
+    every = {track: None for piece in pieces(epochs, ["track"]) for track in piece["track"].unique(maintain_order=True)}
+    elsewhere = [str(track) for track in every if track not in landed]
+    if not elsewhere:
+        return []
+    more = f" and {len(elsewhere) - _PASSES_NAMED} more" if len(elsewhere) > _PASSES_NAMED else ""
+    return [
+        f"{len(elsewhere)} of {len(every)} tracks have no approach to these runways and are not judged: "
+        f"{', '.join(elsewhere[:_PASSES_NAMED])}{more}. Where they flew is no part of the verdict."
+    ]
 
 
 def _named(segments: pl.DataFrame) -> pl.DataFrame:

@@ -90,8 +90,9 @@ _WHO = (
     "reg tail tail_number"
 )
 _SATELLITES = (
-    "ns nsv num_sv n_sats nsats numsat num_sat numsats num_sats satellites n_satellites num_satellites sats svs n_used sats_used svs_used "
-    "sv_used satellites_used used_sats used_svs used_satellites n_sats_used n_sv_used num_sats_used num_sv_used num_satellites_used"
+    "ns nsv num_sv numsv n_sats nsats numsat num_sat numsats num_sats satellites n_satellites num_satellites sats svs n_used sats_used "
+    "svs_used sv_used satellites_used used_sats used_svs used_satellites n_sats_used n_sv_used num_sats_used num_sv_used "
+    "num_satellites_used"
 )
 """Names of the number of satellites of a position; one of those in view is none the smaller."""
 

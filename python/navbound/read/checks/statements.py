@@ -112,7 +112,9 @@ AGE = Kind(
     "invalid",
     _words(
         "age_s position_age position_age_s pos_age pos_age_s fix_age fix_age_s age_of_position age_of_position_s data_age_s seen_pos "
-        "seen_pos_s seconds_since_update seconds_since_last_update seconds_since_fix time_since_update_s time_since_fix_s"
+        "seen_pos_s gps_age gps_age_s gnss_age gnss_age_s last_pos_age last_pos_age_s last_position_age last_position_age_s age_sec "
+        "data_age pos_age_sec position_age_sec fix_age_sec time_since_fix time_since_last_fix time_since_last_fix_s "
+        "seconds_since_update seconds_since_last_update seconds_since_fix time_since_update_s time_since_fix_s"
     ),
     frozenset(),
     frozenset(),
@@ -190,13 +192,18 @@ KINDS: tuple[Kind, ...] = (
         _NO_FIX | _DIGITS - _GGA | _words("simulator simulation simulated manual"),
         _FIX - _DIGITS | _GGA,
     ),
-    Kind("invalid", _words("q qual quality solution_quality"), _NO_FIX, _FIX | {"1"}),
+    Kind(
+        "invalid",
+        _words("q qual quality solution_quality"),
+        _NO_FIX | _words("bad poor unusable unreliable degraded unavailable"),
+        _FIX | _words("1 good ok"),
+    ),
     Kind(
         "invalid",
         _words(
             "mode nav_mode navigation_mode pos_mode position_mode posmode mode_indicator positioning_mode sol_status solution_status "
             "gps_primary gnss_primary sol_stat solstat solution_state "
-            "solution_type pos_type position_type nav_status navigation_status gps_status gnss_status position_status"
+            "solution_type sol_type pos_type position_type nav_status navigation_status gps_status gnss_status position_status"
         ),
         _words(
             "n e m s v no off none no_fix nofix not_valid invalid invalid_fix insufficient_obs no_convergence singularity cov_trace "
@@ -216,7 +223,7 @@ KINDS: tuple[Kind, ...] = (
         "invalid",
         _words(
             "dead_reckoning is_dead_reckoning deadreckoning gps_denied gnss_denied gps_lost gnss_lost no_gps no_gnss no_fix fix_lost "
-            "estimated "
+            "gps_loss gnss_loss gps_outage gnss_outage unusable synthetic is_synthetic old is_old estimated "
             "is_estimated predicted is_predicted extrapolated is_extrapolated interpolated is_interpolated propagated coasted coasting "
             "is_coasting posstale pos_stale position_stale is_stale psr_only ssr_only cst "
             "simulated is_simulated inertial_only ins_only coast dr is_dr suspect suspected is_suspect held is_held imputed "
@@ -254,10 +261,17 @@ KINDS: tuple[Kind, ...] = (
     Kind("invalid", _words("hdop pdop gdop vdop dop"), frozenset(), frozenset(), above=_core.MOST_DILUTION),
     Kind(
         "alert",
-        _words("spoofing_state spoof_state spoof_det_state jamming_state jam_state"),
-        _words("2 3 indicated detected warning critical"),
-        _words("0 1 unknown ok none no"),
+        _words(
+            "spoofing_state spoof_state spoof_det_state jamming_state jam_state gps_interference gnss_interference interference_level "
+            "jamming_level"
+        ),
+        _words("2 3 indicated detected warning critical high severe"),
+        _words("0 1 unknown ok none no low"),
     ),
+    # readsb: when GPS was good for the last time, and only since it is not.
+    Kind("alert", _words("gps_ok_before"), frozenset(), frozenset(), other_against=True),
+    # ASTERIX category 021: the integrity of the position, 0 where there is none within 20 NM.
+    Kind("alert", _words("pic position_integrity_category"), _words("0"), _DIGITS - {"0"} | _words("10 11 12 13 14")),
     Kind(
         "alert",
         _words("raim raim_status raim_state integrity integrity_status integrity_flag integrity_state fde fde_status health gps_health"),
@@ -275,6 +289,7 @@ KINDS: tuple[Kind, ...] = (
             "spoofing spoofed spoofing_detected spoof_flag jamming jammed jamming_detected interference invalid is_invalid "
             "position_invalid unreliable outlier misleading hmi error_flag do_not_use not_valid degraded unable_rnp rnp_alert rnp_warning "
             "raim_flag unhealthy unsafe rejected bad frozen stale stuck mock mocked is_mock mock_location is_mocked from_mock_provider "
+            "unable_req_nav_perf unable_required_navigation_performance unable_nav_perf anp_alert faulty suspicious fail failed "
             "mi sim simulator reverted reversion nav_accuracy_downgraded navaccuracydowngrad "
             "is_from_mock_provider simulated_location"
         )

@@ -191,7 +191,7 @@ def _log(source: Source, log: receivers.Log) -> Reading:
     # Of GGA: the count of other messages is part of their fix.
     out, n_few = of_counted_satellites(out) if source.format.id == "nmea" else (out, 0)
     if n_few:
-        log.notes.append(f"{source.path.name}: {n_few} positions count fewer satellites than determine one; they are degraded.")
+        log.notes.append(f"{source.path.name}: {n_few} positions count fewer satellites than determine one; they are not ok.")
     out, contradicting = _in_order(out, rejections, log.notes)
     empty = [c for c in out.columns if out[c].is_null().all()]
     # The receiver lived and had no position: a row of a table without one counts in the same way.

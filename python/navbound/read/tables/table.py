@@ -355,7 +355,7 @@ def _json_of(source: Source) -> Any:
     decoder = json.JSONDecoder(object_pairs_hook=lambda pairs: _unrepeated(source, pairs))
     text = source.text()
     try:
-        return decoder.decode(text)
+        return _whole_characters(source, text, decoder.decode(text))
     except json.JSONDecodeError as e:
         if e.msg != "Extra data" or not text.lstrip().startswith("{"):
             raise FormatError(source.path, f"not JSON: {e.msg}", e.lineno) from e
@@ -366,7 +366,18 @@ def _json_of(source: Source) -> Any:
                 records.append(decoder.decode(line))
             except json.JSONDecodeError as e:
                 raise FormatError(source.path, f"not an object of JSON on each line: {e.msg}", number) from e
-    return records
+    return _whole_characters(source, text, records)
+
+
+def _whole_characters(source: Source, text: str, content: Any) -> Any:
+    """Refuse half of a character (U+D800 to U+DFFF alone): it can be decoded, and not written anywhere."""
+    if re.search(r"\\u[dD][89a-fA-F]", text):
+        try:
+            json.dumps(content, ensure_ascii=False).encode()
+        except UnicodeEncodeError as e:
+            half = f"\\u{ord(e.object[e.start]):04x}"
+            raise FormatError(source.path, f"half of a character: {half} without the other half of its pair") from e
+    return content
 
 
 def _unrepeated(source: Source, pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -405,6 +416,9 @@ def _fields(record: dict[str, Any], within: tuple[str, ...] = ()) -> Iterator[tu
     for name, value in record.items():
         if isinstance(value, dict) and len(within) < _DEEPEST:
             yield from _fields(value, (*within, name))
+        elif isinstance(value, dict):
+            # Deeper ones are text: a type of hundreds of levels takes minutes to make.
+            yield (*within, name), json.dumps(value)
         else:
             yield (*within, name), value
 

@@ -287,9 +287,9 @@ def _judgement(nees: Nees, pit: Pit) -> str:
         )
     if outside:
         claims = (
-            "too little; the errors are {:.2g} times larger than it says"
+            "smaller errors than there are: they are {:.2g} times what it says"
             if factor > 1
-            else "too much; the errors are {:.2g} times what it says"
+            else "larger errors than there are: they are {:.2g} times what it says"
         )
         return f": the covariance claims {claims.format(factor)}."
     n_outside = sum(not pit.low <= count <= pit.high for count in pit.counts)
