@@ -109,6 +109,24 @@ def test_a_position_that_goes_on_from_where_it_stood_is_as_late_as_it_stood(tmp_
     assert analyzed(tmp_path, later).epochs["reason_id"].to_list()[-100:] == [None] * 100
 
 
+@pytest.mark.parametrize("hold_s", [25, 45, 59])
+def test_a_position_that_goes_on_behind_a_silence_is_as_late_as_one_that_stood(tmp_path: Path, hold_s: int) -> None:
+    """A feed that leaves out what repeats has none of the rows of the hold: 45 s left 10.4 km that nobody saw."""
+
+    def place(second: int) -> dict[str, Any]:
+        return {"lat_deg": 48.0 + second * SPEED_MPS * DEG_PER_M}
+
+    table, end = rows(1200, ground_speed_mps=SPEED_MPS, track_deg=0.0), 600 + hold_s
+    heard = [(k, row) for k, row in enumerate(table) if not 600 < k < end]
+    behind = analyzed(tmp_path, [row | place(k if k <= 600 else k - hold_s + 1) for k, row in heard]).epochs["reason_id"].to_list()
+    assert set(behind[:601]) == {None}
+    assert set(behind[605:]) == {"position_stale"}
+    # Nobody is behind who was merely not heard, or catches up.
+    assert set(analyzed(tmp_path, [row | place(k) for k, row in heard]).epochs["reason_id"].to_list()) == {None}
+    later = [row | place(k if k <= 600 or k > 900 else k - hold_s + 1) for k, row in heard]
+    assert analyzed(tmp_path, later).epochs["reason_id"].to_list()[-100:] == [None] * 100
+
+
 @pytest.mark.parametrize("every_s", [1, 4])
 def test_a_glider_that_circles_steeply_travels_as_far_as_it_says(tmp_path: Path, every_s: int) -> None:
     """22 degrees a second at 26 m/s are 45 degrees of bank: in ten seconds it has turned by more than half a turn."""

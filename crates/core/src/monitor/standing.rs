@@ -172,6 +172,13 @@ impl Resumed {
             {
                 Self { behind_m: (before.behind_m + stood_m + reported_m - step_m).max(0.0), ..at }
             }
+            // The rows of a hold are missing: a feed may leave out what repeats. Half of what the tightest turn would leave is no turn.
+            None if report.speed_mps >= RESUMES_MPS
+                && elapsed_s >= RESUMES_AFTER_S
+                && step_m < 0.5 * chord_share(report.speed_mps, elapsed_s) * reported_m =>
+            {
+                Self { behind_m: before.behind_m + reported_m - step_m, ..at }
+            }
             _ if before.behind_m > 0.0 && !report.speed_mps.is_nan() => {
                 Self { behind_m: (before.behind_m + reported_m - step_m).max(0.0), ..at }
             }
