@@ -177,7 +177,7 @@ impl<'a> Overhead<'a> {
         let place = |u: &Geodetic| Place { position_m: *ecef_from_geodetic(u).vector(), enu: enu_from_ecef(&u.point) };
         Ok(Self {
             outlook,
-            positions: parallel::map(outlook.time_s.len(), 64, |k| sky(outlook.time_s[k])).concat(),
+            positions: parallel::map(outlook.time_s.len(), EPOCHS_PER_TASK, |k| sky(outlook.time_s[k])).concat(),
             places: outlook.users.iter().map(place).collect(),
             sin_mask: outlook.mask.rad().sin(),
         })

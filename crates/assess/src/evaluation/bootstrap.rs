@@ -4,6 +4,9 @@ use super::{INTERVAL_RISK, same_length};
 use crate::parallel;
 use navbound_core::quantity::OutOfDomain;
 
+/// Replicates in one task of the pool.
+const REPLICATES_PER_TASK: usize = 16;
+
 /// 95 % interval of the coverage by resampling tracks with replacement (cluster bootstrap, percentile limits). The result depends on
 /// the seed and the tracks' order alone: every draw is a function of seed, replicate and position.
 ///
@@ -38,7 +41,7 @@ pub fn coverage_interval_of_counts(
     if tracks.len() < 2 {
         return Err((None, OutOfDomain { argument: "track", value: tracks.len() as f64, unit: "tracks", domain: "[2, inf)" }));
     }
-    let mut shares: Vec<f64> = parallel::map(n_replicates, 16, |replicate| share(&tracks, seed, replicate as u64));
+    let mut shares: Vec<f64> = parallel::map(n_replicates, REPLICATES_PER_TASK, |replicate| share(&tracks, seed, replicate as u64));
     shares.sort_unstable_by(f64::total_cmp);
     let at = |p: f64| shares[(p * (n_replicates - 1) as f64).round() as usize];
     Ok((at(0.5 * INTERVAL_RISK), at(1.0 - 0.5 * INTERVAL_RISK)))

@@ -261,17 +261,22 @@ KINDS: tuple[Kind, ...] = (
     Kind("invalid", _words("hdop pdop gdop vdop dop"), frozenset(), frozenset(), above=_core.MOST_DILUTION),
     Kind(
         "alert",
-        _words(
-            "spoofing_state spoof_state spoof_det_state jamming_state jam_state gps_interference gnss_interference interference_level "
-            "jamming_level"
-        ),
-        _words("2 3 indicated detected warning critical high severe"),
-        _words("0 1 unknown ok none no low"),
+        _words("spoofing_state spoof_state spoof_det_state jamming_state jam_state"),
+        _words("2 3 indicated detected warning critical"),
+        _words("0 1 unknown ok none no"),
     ),
-    # readsb: when GPS was good for the last time, and only since it is not.
+    # In words alone: numbers are of a scale that the name does not tell.
+    Kind(
+        "alert",
+        _words("gps_interference gnss_interference interference_level jamming_level"),
+        _words("high severe critical detected warning"),
+        _words("none no low ok"),
+        numbers_unknown=True,
+    ),
+    # readsb: when GPS still worked well, shown for 15 minutes after it was lost or heavily degraded.
     Kind("alert", _words("gps_ok_before"), frozenset(), frozenset(), other_against=True),
-    # ASTERIX category 021: the integrity of the position, 0 where there is none within 20 NM.
-    Kind("alert", _words("pic position_integrity_category"), _words("0"), _DIGITS - {"0"} | _words("10 11 12 13 14")),
+    # ASTERIX category 021: 0 where there is no integrity. Other categories are radii, of 20 NM and less, which nothing here reads: named.
+    Kind("alert", _words("pic position_integrity_category"), _words("0"), frozenset()),
     Kind(
         "alert",
         _words("raim raim_status raim_state integrity integrity_status integrity_flag integrity_state fde fde_status health gps_health"),
