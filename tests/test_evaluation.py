@@ -198,7 +198,7 @@ def test_a_histogram_outside_its_band_is_reported_though_the_mean_is_right() -> 
 
 @pytest.mark.parametrize(
     ("mean", "says"),
-    [(6.4, "More tracks decide it"), (12.0, "claims too little"), (0.3, "More tracks decide it"), (0.1, "claims too much")],
+    [(6.4, "More tracks decide it"), (12.0, "claims smaller errors"), (0.3, "More tracks decide it"), (0.1, "claims larger errors")],
 )
 def test_a_few_effective_epochs_decide_nothing_that_one_might_have(mean: float, says: str) -> None:
     flat = evaluation.Pit(n=400, n_effective=4.0, counts=[20] * 20, low=0.0, high=400.0)

@@ -73,7 +73,7 @@ def test_a_filter_that_takes_all_errors_for_white_is_caught_by_nees_and_pit_but_
     # Claimed 0.7 m where the errors are 4 m and more (specification 7, case C): 100 times in the mean; ten is far beyond chance.
     assert consistency.nees_mean > 10 * consistency.nees_high
     assert consistency.pit_counts[-1] > 5 * consistency.pit_high
-    assert "claims too little" in consistency.words
+    assert "claims smaller errors" in consistency.words
     reported = white.record.settings["filter"]
     assert isinstance(reported, dict)
     # The mean squared innovation looks healthy. What gives the filter away is that each innovation knows the one before.
