@@ -8,9 +8,9 @@ import os
 import re
 import shutil
 import sys
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import typer
 from sphinxcontrib.programoutput import Command
@@ -18,6 +18,8 @@ from sphinxcontrib.programoutput import Command
 from navbound import __version__
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from sphinx.application import Sphinx
     from typer._click.core import Command as Commands
 
@@ -122,8 +124,26 @@ def list_decisions(_app: Sphinx, name: str, source: list[str]) -> None:
         source[0] = f"---\norphan: true\n---\n{source[0]}"
 
 
+def share_trees(_app: Sphinx, name: str, _template: str, context: dict[str, Any], _doctree: object) -> None:
+    """The list of all pages beside a decision record is that beside every other one: made once, not a hundred times."""
+    if name.startswith("decisions/"):
+        context["toctree"] = partial(shared_tree, context["toctree"])
+
+
+TREES: dict[str, str] = {}
+
+
+def shared_tree(make: Callable[..., str], **how: object) -> str:
+    """The tree of a record; all of them are in one folder, and none is in the tree."""
+    key = repr(how)
+    if key not in TREES:
+        TREES[key] = make(**how)
+    return TREES[key]
+
+
 def setup(app: Sphinx) -> None:
     """Called by Sphinx; the extension has its store of outputs from the same event."""
     app.connect("source-read", list_decisions)
+    app.connect("html-page-context", share_trees, priority=100)
     app.connect("builder-inited", print_all_help, priority=900)
     app.connect("builder-inited", make_examples_once, priority=900)

@@ -105,14 +105,13 @@ def _fast(time_s: int, part: int, iodf: int, indicators: list[int]) -> Sent:
 
 def _indicators(service: Service, recording: StationRecording, time_s: int) -> list[int]:
     """UDRE indicator of every satellite of the mask: those above the horizon are monitored."""
-    names, above = _above(recording, *service.centre_rad, time_s)
+    names, above = _above(recording.navigation.orbits("gps", time_s * _NS), *service.centre_rad)
     monitored = {name for name, each in zip(names, above, strict=True) if each > 0.0}
     return [_UDREI if f"G{prn:02d}" in monitored else _NOT_MONITORED for prn in _MASK]
 
 
-def _above(recording: StationRecording, lat_rad: float, lon_rad: float, time_s: int) -> tuple[tuple[str, ...], list[float]]:
-    """Satellites of GPS and their elevations [rad]."""
-    orbits = recording.navigation.orbits("gps", time_s * _NS)
+def _above(orbits: gnss.Orbits, lat_rad: float, lon_rad: float) -> tuple[tuple[str, ...], list[float]]:
+    """Satellites and their elevations [rad]."""
     _, el_rad = gnss.directions(orbits, lat_rad, lon_rad, 0.0, 0.0)
     return orbits.satellite, el_rad.ravel().tolist()
 
@@ -125,6 +124,7 @@ class _Slow:
         self._n = 0
         self._kinds = _kinds()
         self._delay_m = cache(self._measured_m)
+        self._orbits = cache(lambda time_s: recording.navigation.orbits("gps", time_s * _NS))
         records = recording.navigation.records()
         self._records = list(zip(*(records[name].to_list() for name in ("satellite", "orbit_time_ns", "issue")), strict=True))
 
@@ -183,14 +183,13 @@ class _Slow:
         lat_rad, lon_rad = map(float, np.radians(point))
         station = Station(lat_rad, lon_rad, 0.0, time_s * _NS, 1.0, 1, seed, mask_rad=_HIGH_RAD, galileo=False)
         measured = measure(station, "GRID")
-        first, second = (measured.observations.column("G", code) for code in ("C1C", "C2L"))
-        codes = first.join(second, on="satellite", suffix="_second")
-        names, above = _above(self._recording, lat_rad, lon_rad, time_s)
+        first, second = (
+            dict(codes.select("satellite", "value").iter_rows())
+            for codes in (measured.observations.column("G", code) for code in ("C1C", "C2L"))
+        )
+        names, above = _above(self._orbits(time_s), lat_rad, lon_rad)
         elevation = dict(zip(names, above, strict=True))
-        vertical = [
-            (second_m - first_m) / _RATIO * _mapped(elevation[name])
-            for name, first_m, second_m in codes.select("satellite", "value", "value_second").iter_rows()
-        ]
+        vertical = [(second[name] - first[name]) / _RATIO * _mapped(elevation[name]) for name in first if name in second]
         return max(float(np.mean(vertical)), 0.0) if vertical else None
 
 
