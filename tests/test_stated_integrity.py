@@ -125,7 +125,10 @@ def test_a_row_that_is_not_valid_by_its_own_recording_is_not_judged(tmp_path: Pa
         ("unable_rnp", 0, 1),
         ("unhealthy", 0, 1),
         ("gpsOkBefore", "", 1764300000.0),
-        ("pic", "", 0),
+        ("sil", 3, 0),
+        ("SIL", "2", "0"),
+        ("trust", 5, 0),
+        ("confidence", "high", "low"),
         ("unable_req_nav_perf", "FALSE", "TRUE"),
         ("anp_alert", 0, 1),
         ("faulty", 0, 1),
@@ -172,8 +175,7 @@ def test_an_alert_under_any_of_its_names_is_one(tmp_path: Path, name: str, fine:
     ("name", "value", "named"),
     [
         ("mode", "LOITER", "mode (loiter)"),
-        # Containment within 20 NM is nobody's "fine".
-        ("pic", "1", "pic (1)"),
+        ("confidence", "0.95", "confidence (0.95)"),
         ("jamming_level", "3", "jamming_level (3)"),
         ("raim", "1", "raim (1)"),
         ("fix_quality", "12", "fix_quality (12)"),

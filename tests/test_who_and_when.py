@@ -59,7 +59,10 @@ def test_an_old_position_is_as_one_that_repeats(tmp_path: Path, name: str, age_s
 
 
 @pytest.mark.parametrize(("age_s", "reason"), [(0.5, None), (1.0, None), (1.9, "position_held"), (2.5, "reported")])
-@pytest.mark.parametrize(("name", "unit_s"), [("seen_pos", 1.0), ("fix_age", 1.0), ("age_s", 1.0), ("seen_pos_ms", 1e-3)])
+@pytest.mark.parametrize(
+    ("name", "unit_s"),
+    [("seen_pos", 1.0), ("fix_age", 1.0), ("age_s", 1.0), ("seen_pos_ms", 1e-3), ("position_latency_s", 1.0), ("posDelay", 1.0)],
+)
 def test_an_age_of_a_position_dates_it(tmp_path: Path, name: str, unit_s: float, age_s: float, reason: str | None) -> None:
     assert reasons(analyzed(tmp_path, rows(**column(name, age_s / unit_s)))) == {reason}
 
@@ -217,6 +220,53 @@ def test_two_columns_of_one_latitude_must_agree(tmp_path: Path, name: str, off_d
     assert verdict.id == ("not_shown" if doubted else "inside")
     path = tmp_path / "a.json"
     assert navbound.analyze(path, columns={"est_lat_rad": "lat_deg:deg"}).summary.verdict.id == "inside"
+
+
+@pytest.mark.parametrize(("off_deg", "doubted"), [(0.0, False), (0.01, False), (0.5, True)])
+@pytest.mark.parametrize("name", ["gps_lat", "lat2", "True Latitude", "fusedLat", "irs.lat", "dr_lat_rad"])
+def test_another_place_of_the_vehicle_is_not_far_away(tmp_path: Path, name: str, off_deg: float, doubted: bool) -> None:
+    """0.01 degrees are 1.1 km, 0.5 degrees 56 km."""
+    to_unit = math.pi / 180.0 if name.endswith("_rad") else 1.0
+    table = [row | {name: (row["lat_deg"] + off_deg) * to_unit} for row in rows()]
+    verdict = analyzed(tmp_path, table).summary.verdict
+    assert any("two columns of places of one vehicle" in each for each in verdict.position_doubts) == doubted
+    assert verdict.id == ("not_shown" if doubted else "inside")
+    assert navbound.analyze(tmp_path / "a.json", columns={"est_lat_rad": "lat_deg:deg"}).summary.verdict.id == "inside"
+
+
+@pytest.mark.parametrize(("name", "off_deg", "doubted"), [("irs_lat", 0.1, False), ("gps_lat", 0.1, True)])
+def test_what_inertial_sensors_keep_may_be_miles_off(tmp_path: Path, name: str, off_deg: float, doubted: bool) -> None:
+    """0.1 degrees are 6 NM: RNP 10 allows them 10."""
+    verdict = analyzed(tmp_path, [row | {name: row["lat_deg"] + off_deg} for row in rows()]).summary.verdict
+    assert verdict.id == ("not_shown" if doubted else "inside")
+
+
+@pytest.mark.parametrize(
+    ("name", "lat_deg"), [("lat0", 45.0), ("ref_lat", 45.0), ("gps_lat", 0.0), ("runway_lat", None), ("next_lat", None)]
+)
+def test_an_origin_and_a_receiver_without_a_fix_contradict_nothing(tmp_path: Path, name: str, lat_deg: float | None) -> None:
+    """Nor do places of other things, which move along three degrees away."""
+    table = [row | {name: row["lat_deg"] + 3.0 if lat_deg is None else lat_deg} for row in rows()]
+    assert analyzed(tmp_path, table).summary.verdict.id == "inside"
+
+
+@pytest.mark.parametrize(("flags", "shown"), [([], True), (["healthy", "3D"], True), (["late", "spoofed"], False), (["GPS LOST"], False)])
+def test_words_in_a_list_are_read_as_a_text(tmp_path: Path, flags: list[str], shown: bool) -> None:
+    table = [row | {"flags": flags if 100 <= k < 200 else []} for k, row in enumerate(rows())]
+    assert (analyzed(tmp_path, table).summary.verdict.id == "inside") == shown
+
+
+@pytest.mark.parametrize(("source", "n_ok"), [("GPS", None), ("gps/ins", None), ("IRS", 0), ("inertial", 0)])
+def test_a_position_that_inertial_sensors_alone_keep_is_not_judged(tmp_path: Path, source: str, n_ok: int | None) -> None:
+    summary = analyzed(tmp_path, [row | {"navSource": source} for row in rows()]).summary
+    assert summary.n_status.get("ok", 0) == (len(rows()) if n_ok is None else n_ok)
+
+
+@pytest.mark.parametrize(("pic", "shown"), [(8, True), (7, True), (6, False), (1, False), (0, False)])
+def test_a_position_integrity_category_is_a_radius(tmp_path: Path, pic: int, shown: bool) -> None:
+    """0.5, 0.6, 1 and 20 NM, and none; twice RNP 0.3 is 0.6 NM."""
+    verdict = analyzed(tmp_path, [row | {"pic": pic} for row in rows()]).summary.verdict
+    assert verdict.id == ("inside" if shown else "not_shown")
 
 
 @pytest.mark.parametrize(("later_s", "doubted"), [(0.0, False), (1.5, False), (1000.0, True)])
@@ -379,7 +429,7 @@ def test_a_callsign_is_one_in_any_writing(tmp_path: Path) -> None:
     ("added", "named"),
     [
         ({"last_position": 1_700_000_000, "time_position": 1_699_999_000}, "time_position"),
-        ({"pos_delay_ms": 30000}, "pos_delay_ms"),
+        ({"fix_lag_ms": 30000}, "fix_lag_ms"),
     ],
 )
 def test_an_age_that_is_not_understood_is_named(tmp_path: Path, added: dict[str, Any], named: str) -> None:

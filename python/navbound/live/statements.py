@@ -12,7 +12,7 @@ from navbound.table.columns import COVARIANCE
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-_JUDGED = frozenset({"sigma_e_m", "sigma_n_m", "epu_m", "rc_m", "nac_p", "nic", "nuc_p", "hpl_m", "status", *COVARIANCE})
+_JUDGED = frozenset({"sigma_e_m", "sigma_n_m", "epu_m", "rc_m", "nac_p", "nic", "nuc_p", "pic", "hpl_m", "status", *COVARIANCE})
 """Quantities of tables that bound a position or speak for it. Under a name that is none of the contract their value is not understood."""
 _CONTRACT = ("sigma_m", "rnp_m")
 """Keys of the contract that no table has: written otherwise, they are none of it."""

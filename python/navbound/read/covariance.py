@@ -85,6 +85,27 @@ NUCP_RC_M = {
 Provenance: as `NUCP_EPU_M`.
 """
 
+PIC_RC_M = {
+    14: 7.5,
+    13: 25.0,
+    12: 75.0,
+    11: 0.1 * METRES_PER_NM,
+    10: 0.2 * METRES_PER_NM,
+    9: 0.3 * METRES_PER_NM,
+    8: 0.5 * METRES_PER_NM,
+    7: 0.6 * METRES_PER_NM,
+    6: METRES_PER_NM,
+    5: 2 * METRES_PER_NM,
+    4: 4 * METRES_PER_NM,
+    3: 8 * METRES_PER_NM,
+    2: 10 * METRES_PER_NM,
+    1: 20 * METRES_PER_NM,
+}
+"""Position integrity category of surveillance reports to the containment radius [m]; 0 is "unknown".
+
+Provenance: inferred (EUROCONTROL ASTERIX category 021, item 090); the document was not read, the radii are those of public decoders of it.
+"""
+
 SIL_RISK = {3: 1e-7, 2: 1e-5, 1: 1e-3}
 """Source integrity level to the risk, an hour or a sample, that the error exceeds the containment radius; 0 is "unknown".
 
@@ -198,11 +219,11 @@ def _least_radii(epochs: pl.DataFrame) -> list[pl.Series]:
 def _with_containment(epochs: pl.DataFrame) -> pl.DataFrame:
     """Add `CONTAINMENT`, infinite where the indicator says that there is none, and levels that nothing reads."""
     have = set(epochs.columns)
-    if not have & {"rc_m", "nic", "nuc_p", "unread_level_m"}:
+    if not have & {"rc_m", "nic", "nuc_p", "pic", "unread_level_m"}:
         return epochs
     coded = {
         name: _in_force(name).replace_strict(radii | {0: math.inf}, default=None, return_dtype=pl.Float64)
-        for name, radii in (("nic", NIC_RC_M), ("nuc_p", NUCP_RC_M))
+        for name, radii in (("nic", NIC_RC_M), ("nuc_p", NUCP_RC_M), ("pic", PIC_RC_M))
         if name in have
     }
     # Decoders write a radius of 0 where there is none; beside a NIC of 0 no radius is contained.
@@ -212,7 +233,7 @@ def _with_containment(epochs: pl.DataFrame) -> pl.DataFrame:
     radii = ([pl.when(without).then(math.inf).otherwise(pl.coalesce(stated))] if stated else []) + (
         [pl.col("unread_level_m")] if "unread_level_m" in have else []
     )
-    radii += [coded["nuc_p"]] if "nuc_p" in have else []
+    radii += [coded[name] for name in ("nuc_p", "pic") if name in have]
     return epochs.with_columns(pl.max_horizontal(radii).alias(CONTAINMENT))
 
 
@@ -243,7 +264,7 @@ def _of_axes(what: str) -> str:
 
 def _beside(have: set[str]) -> str:
     """Accuracies that the file states beside the one that is used."""
-    named = {"epu_m": "EPU", "nac_p": "NACp", "rc_m": "Rc", "nic": "NIC", "nuc_p": "NUCp"}
+    named = {"epu_m": "EPU", "nac_p": "NACp", "rc_m": "Rc", "nic": "NIC", "nuc_p": "NUCp", "pic": "PIC"}
     others = [words for name, words in named.items() if name in have]
     compared = " One that is larger than twice the distance root mean square speaks against the covariance." if others else ""
     return f" Stated beside it and not used: {', '.join(others)}.{compared}" if others else ""
@@ -272,7 +293,7 @@ class Claims:
         return replace(claimed, epochs=claimed.epochs[before.height :], own_sigma_m=self._own_m)
 
 
-_INDICATORS = ("nac_p", "nic", "nuc_p", "rc_m")
+_INDICATORS = ("nac_p", "nic", "nuc_p", "pic", "rc_m")
 
 
 def _coded(epochs: pl.DataFrame, have: set[str]) -> Claimed:

@@ -52,10 +52,13 @@ OF_POSITION = _words(
 OPENSKY_FOREIGN, OPENSKY_OWN = _words("1 2"), _words("0 3")
 """Numbers of OpenSky in them: 1 ASTERIX, 2 MLAT; 0 ADS-B, 3 FLARM."""
 
-OF_ANYTHING = _words(
-    "type source source_type src data_source track_source surveillance_source surveillance_type nav_source navigation_source"
-)
+OF_ANYTHING = _words("type source source_type src data_source track_source surveillance_source surveillance_type")
 """Columns that may say that, or what kind of aircraft, of message or of receiver: a word that is not known is named."""
+
+OF_NAVIGATION = _words("nav_source navigation_source nav_src navigation_sensor nav_sensor")
+"""Columns that say what keeps the position."""
+INERTIAL = _words("irs ins iru inertial imu irs_only ins_only inertial_only dr")
+"""Words in them of inertial sensors alone."""
 
 LISTS = _words(
     "mlat is_mlat by_mlat from_mlat mlat_position position_mlat multilateration multilaterated is_multilaterated "

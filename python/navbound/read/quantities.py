@@ -92,7 +92,7 @@ _WHO = (
 _SATELLITES = (
     "ns nsv num_sv numsv n_sats nsats numsat num_sat numsats num_sats satellites n_satellites num_satellites sats svs n_used sats_used "
     "svs_used sv_used satellites_used used_sats used_svs used_satellites n_sats_used n_sv_used num_sats_used num_sv_used "
-    "num_satellites_used"
+    "num_satellites_used gps_sats gps_satellites gps_nsats gps_num_sats gps_sats_used gnss_sats gnss_satellites gnss_sats_used"
 )
 """Names of the number of satellites of a position; one of those in view is none the smaller."""
 
@@ -151,6 +151,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     _q("nac_p", 0.0, 15.0, **{"1": "nacp nac_p"}),
     _q("nic", 0.0, 15.0, **{"1": "nic"}),
     _q("nuc_p", 0.0, 9.0, **{"1": "nucp nuc_p nuc"}),
+    _q("pic", 0.0, 14.0, **{"1": "pic position_integrity_category"}),
     # What cannot be a setting is judged where it is used: the position beside it is none the worse.
     _q("setting_hpa", -_INF, _INF, hpa="nav_qnh qnh qnh_hpa altimeter_setting_hpa"),
     _q("n_sv", 0.0, 255.0, **{"1": _SATELLITES}),

@@ -229,6 +229,7 @@ READ: tuple[Column, ...] = (
     *row("setting_hpa", f"altimeter setting that an aircraft broadcasts; {_READ}", "source"),
     *row("nac_p nic", f"accuracy and integrity category that a transponder states; {_READ}", "source", kind="number"),
     *row("nuc_p", f"category of both that a transponder of version 0 states; {_READ}", "source", kind="number"),
+    *row("pic", f"position integrity category of a surveillance report; {_READ}", "source", kind="number"),
     *row("callsign", f"callsign of the aircraft; {_READ}", "source", kind="text"),
 )
 """What a recording may hold beside the columns of the epoch table."""

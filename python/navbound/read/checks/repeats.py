@@ -36,7 +36,7 @@ FASTER, AHEAD_M, ASIDE, CLIMB, HEIGHTS_M = 1.25, 5.0, 0.05, 0.25, 8.0
 behind by `ASIDE` v and `AHEAD_M`, in height by `CLIMB` v and `HEIGHTS_M`. [1, m, 1, 1, m] Provenance: ours; steps of the coding of a
 position and of 25 ft, a turn of 17 m/s2, a reported direction that is 3 degrees off."""
 
-BOUNDS = ("sigma_e_m", "sigma_n_m", "sigma_u_m", "epu_m", "rc_m", "nac_p", "nic", "nuc_p", "hpl_m", "vpl_m", "hpe_m", "vpe_m")
+BOUNDS = ("sigma_e_m", "sigma_n_m", "sigma_u_m", "epu_m", "rc_m", "nac_p", "nic", "nuc_p", "pic", "hpl_m", "vpl_m", "hpe_m", "vpe_m")
 """What a row states of its accuracy or its bound, beside its covariance."""
 
 ERRORS = ("nse_e_m", "nse_n_m", "nse_u_m", "stated_error_m", "truth_h_m")

@@ -114,7 +114,9 @@ AGE = Kind(
         "age_s position_age position_age_s pos_age pos_age_s fix_age fix_age_s age_of_position age_of_position_s data_age_s seen_pos "
         "seen_pos_s gps_age gps_age_s gnss_age gnss_age_s last_pos_age last_pos_age_s last_position_age last_position_age_s age_sec "
         "data_age pos_age_sec position_age_sec fix_age_sec time_since_fix time_since_last_fix time_since_last_fix_s "
-        "seconds_since_update seconds_since_last_update seconds_since_fix time_since_update_s time_since_fix_s"
+        "seconds_since_update seconds_since_last_update seconds_since_fix time_since_update_s time_since_fix_s "
+        "pos_delay pos_delay_s position_delay position_delay_s fix_delay fix_delay_s pos_latency pos_latency_s position_latency "
+        "position_latency_s staleness staleness_s dt_fix dt_fix_s tow_age tow_age_s"
     ),
     frozenset(),
     frozenset(),
@@ -125,7 +127,10 @@ AGE = Kind(
 
 AGE_MS = Kind(
     "invalid",
-    _words("position_age_ms pos_age_ms fix_age_ms age_of_position_ms seen_pos_ms time_since_fix_ms"),
+    _words(
+        "position_age_ms pos_age_ms fix_age_ms age_of_position_ms seen_pos_ms time_since_fix_ms pos_delay_ms position_delay_ms "
+        "fix_delay_ms pos_latency_ms position_latency_ms staleness_ms"
+    ),
     frozenset(),
     frozenset(),
     above=1e3 * STALE_AFTER_S,
@@ -194,7 +199,7 @@ KINDS: tuple[Kind, ...] = (
     ),
     Kind(
         "invalid",
-        _words("q qual quality solution_quality"),
+        _words("q qual quality solution_quality pos_quality position_quality nav_quality gnss_quality"),
         _NO_FIX | _words("bad poor unusable unreliable degraded unavailable"),
         _FIX | _words("1 good ok"),
     ),
@@ -254,6 +259,15 @@ KINDS: tuple[Kind, ...] = (
         other_against=True,
         fine_begins=own_positions.OWN_BEGINS,
     ),
+    # What keeps the position of an aircraft, where it may be inertial sensors alone.
+    Kind(
+        "invalid",
+        own_positions.OF_NAVIGATION,
+        own_positions.FOREIGN | own_positions.INERTIAL,
+        own_positions.OWN,
+        fine_begins=own_positions.OWN_BEGINS,
+        against_named=own_positions.NAMED_COMPUTED,
+    ),
     BY_OTHERS,
     Kind("invalid", own_positions.UPDATE_TYPE, own_positions.UPDATE_FOREIGN, own_positions.UPDATE_OWN, other_against=True),
     NUC,
@@ -275,8 +289,15 @@ KINDS: tuple[Kind, ...] = (
     ),
     # readsb: when GPS still worked well, shown for 15 minutes after it was lost or heavily degraded.
     Kind("alert", _words("gps_ok_before"), frozenset(), frozenset(), other_against=True),
-    # ASTERIX category 021: 0 where there is no integrity. Other categories are radii, of 20 NM and less, which nothing here reads: named.
-    Kind("alert", _words("pic position_integrity_category"), _words("0"), frozenset()),
+    # 0 where no integrity is known or a probability of 1e-3 is exceeded; what the other levels say nothing here reads.
+    Kind("alert", _words("sil source_integrity_level surveillance_integrity_level"), _words("0 unknown"), _words("1 2 3")),
+    # The least of a scale is none, whatever the scale; the others are named.
+    Kind(
+        "alert",
+        _words("trust trust_level confidence confidence_level integrity_level"),
+        _words("0 none no low very_low poor false untrusted unreliable"),
+        _words("high very_high full true yes"),
+    ),
     Kind(
         "alert",
         _words("raim raim_status raim_state integrity integrity_status integrity_flag integrity_state fde fde_status health gps_health"),
@@ -389,8 +410,11 @@ def _speaks_of_distance_from_truth(name: str) -> bool:
 _LATITUDE = _words("lat latitude lon lng longitude")
 _NO_VEHICLE = _NO_TRUTH | _words(
     "airport origin destination dest departure dep arrival arr home target goal next prev previous start end first last site sensor radar "
-    "beacon antenna cpr centre center cell grid tile offset scale speed vel velocity rate err error sigma std var acc accuracy axis"
+    "beacon antenna cpr centre center cell grid tile offset scale speed vel velocity rate err error sigma std var acc accuracy axis "
+    "pred predicted forecast intruder traffic lead leader min max mean avg average median"
 )
+_INERTIAL = _words("irs ins iru ir adiru adirs inertial dr dead reckoning deadreckoning")
+"""Parts of names of a place that only inertial sensors keep."""
 """Parts of names of a latitude or a longitude, and of one that is none of the vehicle now. Provenance: ours."""
 
 
@@ -398,6 +422,14 @@ def _speaks_of_place(name: str) -> bool:
     """Whether the name is one of another place of the vehicle: the truth of somebody else, a second receiver."""
     parts = {part.rstrip("0123456789") for part in _parts(name)}
     return not _LATITUDE.isdisjoint(parts) and parts.isdisjoint(_NO_VEHICLE)
+
+
+def other_place(name: str) -> tuple[Literal["est_lat_rad", "est_lon_rad"], bool] | None:
+    """Which coordinate of another place of the vehicle a column is by its name, and whether inertial sensors alone keep it; or none."""
+    if not _speaks_of_place(name):
+        return None
+    parts = {part.rstrip("0123456789") for part in _parts(name)}
+    return ("est_lat_rad" if parts & {"lat", "latitude"} else "est_lon_rad"), not _INERTIAL.isdisjoint(parts)
 
 
 def speaks_of_integrity(name: str) -> bool:

@@ -10,7 +10,15 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError, InputError
-from navbound.read.checks.statements import NUC, READSB_TYPE, kind_of, speaks_of_accuracy, speaks_of_integrity, speaks_of_level
+from navbound.read.checks.statements import (
+    NUC,
+    READSB_TYPE,
+    kind_of,
+    other_place,
+    speaks_of_accuracy,
+    speaks_of_integrity,
+    speaks_of_level,
+)
 from navbound.read.own_positions import READSB
 from navbound.read.quantities import (
     FLIGHTRADAR24,
@@ -70,6 +78,8 @@ class Assignment:
         Columns in which a recorded track states the validity or the integrity of its own positions.
     again : list of Column
         Further columns of a position, a speed or a time that is read and that nobody declared: a known name stands twice.
+    places : list of Column
+        Columns of another place of the vehicle under names that nothing reads, where nobody declared which one counts.
     absent : frozenset of str
         Quantities that no column is to be read as, nor made of others.
     """
@@ -79,6 +89,7 @@ class Assignment:
     unused: list[str]
     statements: list[tuple[str, Kind]] = field(default_factory=list)
     again: list[Column] = field(default_factory=list)
+    places: list[Column] = field(default_factory=list)
     absent: frozenset[str] = frozenset()
 
     @property
@@ -213,7 +224,9 @@ def assign(
     statements = [(name, kind) for name, kind in kinds.items() if kind is not None]
     stating = {name for name, _ in statements}
     again = _again(columns, times, {*(declared or {}), *beside}, [n for n in free if kinds.get(n) in (None, NUC)], path)
-    return Assignment(columns, times, [n for n in free if n not in stating], statements, again, absent)
+    unused = [n for n in free if n not in stating]
+    places = _places({*(declared or {}), *beside}, [n for n in unused if n not in {column.name for column in again}])
+    return Assignment(columns, times, unused, statements, again, places, absent)
 
 
 def _of_layouts(names: list[str]) -> dict[str, Column]:
@@ -224,7 +237,7 @@ def _of_layouts(names: list[str]) -> dict[str, Column]:
     return {quantity: Column(quantity, name, unit) for layout in layouts for quantity, (name, unit) in layout.items()}
 
 
-_COMPARED = ("est_lat_rad", "est_lon_rad", "ground_speed_mps", "nac_p", "nic", "nuc_p")
+_COMPARED = ("est_lat_rad", "est_lon_rad", "ground_speed_mps", "nac_p", "nic", "nuc_p", "pic")
 """Quantities of which further columns are compared with the one that is read."""
 
 
@@ -237,6 +250,13 @@ def _again(columns: Mapping[str, Column], times: Sequence[Column], declared: Con
     if len(times) == 1 and "time" not in declared:
         further += [column for column in _times(rest)[:1] if column.unit not in WEEK]
     return further
+
+
+def _places(declared: Container[str], free: list[str]) -> list[Column]:
+    """Columns of another place of the vehicle, in degrees unless their name says radians."""
+    places = ((name, other_place(name)) for name in free)
+    axes = [(name, place[0]) for name, place in places if place is not None and place[0] not in declared]
+    return [Column(axis, name, "rad" if _plain(name)[0].endswith("_rad") else "deg") for name, axis in axes]
 
 
 _NAMES = frozenset(

@@ -12,7 +12,7 @@ import polars as pl
 
 from navbound.errors import FormatError
 from navbound.read.checks.plausible import Limits
-from navbound.read.checks.statements import STALE_AFTER_S
+from navbound.read.checks.statements import STALE_AFTER_S, other_place
 from navbound.read.tables.cells import largest, no_field, numbers
 from navbound.read.tables.columns import NO_COLUMN, declare
 from navbound.read.tables.table import LINE
@@ -23,10 +23,16 @@ if TYPE_CHECKING:
     from collections.abc import Container, Mapping
     from pathlib import Path
 
-    from navbound.read.tables.columns import Assignment
+    from navbound.read.tables.columns import Assignment, Column
 
 APART_M = 100.0
 """Two columns of one position contradict each other beyond it: two antennas and two filters do not. Provenance: ours. [m]"""
+PLACES_APART_M = 1852.0
+"""Another place of the vehicle, of whatever sensor, contradicts the position beyond it. Provenance: ours. [m]"""
+INERTIAL_APART_M = 10 * 1852.0
+"""The same where inertial sensors alone keep the place: what RNP 10 allows them. Provenance: ours. [m]"""
+_MOVED_M = 100.0
+"""A coordinate that changes by less is the origin of something, and no place of a vehicle. Provenance: ours. [m]"""
 SPEEDS_APART_MPS, SPEEDS_APART = 10.0, 0.1
 """Two columns of one speed contradict each other beyond this and this share of the larger; filters do not. Provenance: ours. [m/s, 1]"""
 SPEEDS_SHARE = 0.2
@@ -34,7 +40,7 @@ SPEEDS_SHARE = 0.2
 _VELOCITY = ("vel_n_mps", "vel_e_mps")
 _DIRECTED_MPS = 2.0
 """Slower velocities have no direction. Provenance: ours. [m/s]"""
-_INDICATORS = ("nac_p", "nic", "nuc_p")
+_INDICATORS = ("nac_p", "nic", "nuc_p", "pic")
 """Of two columns the smaller counts: the less is claimed."""
 _SCALE_M = {"est_lat_rad": pl.lit(EARTH_RADIUS_M), "est_lon_rad": EARTH_RADIUS_M * pl.col("est_lat_rad").cos()}
 """Metres of a radian, for the quantities of a position."""
@@ -51,20 +57,18 @@ class Further:
         self._time = next((column for column in mapping.again if column.quantity == "time"), None)
         self._facts, self._unit = list[TimeFacts](), ""
         self._apart_m: dict[str, float] = {}
+        self._range_rad: dict[str, tuple[float, float]] = {}
         self._speeds: dict[str, tuple[int, int, float]] = {}
         self._apart_s = 0.0
 
     def see(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
         """The next rows: those that are read, with the largest speed, and the file's."""
-        for column in self._mapping.again:
+        for column in (*self._mapping.again, *self._mapping.places):
             if column.quantity not in part.columns or no_field(frame.schema[column.name]):
                 continue
             other, _ = numbers(frame[column.name], column)
             if column.quantity in _SCALE_M:
-                apart = pl.col(column.quantity) - other
-                apart -= 2.0 * math.pi * (apart / (2.0 * math.pi)).round()
-                apart_m = part.select(apart_m=apart.abs() * _SCALE_M[column.quantity])["apart_m"]
-                self._apart_m[column.name] = max(self._apart_m.get(column.name, 0.0), largest(apart_m))
+                self._see_place(column, part, other)
             elif column.quantity in _INDICATORS:
                 part = part.with_columns(pl.min_horizontal(column.quantity, other).alias(column.quantity))
             else:
@@ -74,6 +78,17 @@ class Further:
             of_velocity = part.select(speed=(pl.col(_VELOCITY[0]) ** 2 + pl.col(_VELOCITY[1]) ** 2).sqrt())["speed"]
             self._see_speeds(_VELOCITY[0], part["ground_speed_mps"], of_velocity)
         return part
+
+    def _see_place(self, column: Column, part: pl.DataFrame, other: pl.Series) -> None:
+        # A receiver without a fix writes 0.
+        other = other.set(other == 0.0, None)
+        apart = pl.col(column.quantity) - other
+        apart -= 2.0 * math.pi * (apart / (2.0 * math.pi)).round()
+        apart_m = part.select(apart_m=apart.abs() * _SCALE_M[column.quantity])["apart_m"]
+        self._apart_m[column.name] = max(self._apart_m.get(column.name, 0.0), largest(apart_m))
+        least, most = self._range_rad.get(column.name, (math.inf, -math.inf))
+        bounds = pl.select(least=pl.min_horizontal(pl.lit(least), other.min()), most=pl.max_horizontal(pl.lit(most), other.max()))
+        self._range_rad[column.name] = bounds.row(0)
 
     def _see_speeds(self, name: str, one: pl.Series, other: pl.Series) -> None:
         apart = (one - other).abs()
@@ -88,6 +103,13 @@ class Further:
             apart_m, used = self._apart_m.get(column.name, 0.0), self._mapping.columns.get(column.quantity)
             if used is not None and apart_m > APART_M:
                 words.append(self._doubt("one quantity", (used.name, column.name), f"{apart_m:.0f} m", column.quantity))
+        for column in self._mapping.places:
+            apart_m, used = self._apart_m.get(column.name, 0.0), self._mapping.columns.get(column.quantity)
+            place = other_place(column.name)
+            least, most = self._range_rad.get(column.name, (0.0, 0.0))
+            moved = (most - least) * EARTH_RADIUS_M > _MOVED_M
+            if used is not None and place is not None and moved and apart_m > (INERTIAL_APART_M if place[1] else PLACES_APART_M):
+                words.append(self._doubt("places of one vehicle", (used.name, column.name), f"{apart_m:.0f} m", column.quantity))
         used = self._mapping.columns.get("ground_speed_mps")
         for name, (n, n_far, most_mps) in self._speeds.items():
             if used is not None and n_far > SPEEDS_SHARE * n:

@@ -262,7 +262,9 @@ class Values:
         """What columns of validity and of alerts state."""
         stated = [(name, kind.effect, statements.stated(kind, frame[name])) for name, kind in self._mapping.statements]
         kinds = frame.schema
-        texts = frame.select([name for name in self._mapping.unused if kinds.get(name) == pl.String])
+        unused = [name for name in self._mapping.unused if kinds.get(name) in (pl.String, pl.List(pl.String))]
+        # Words in a list are one text of several.
+        texts = frame.select(pl.col(name).list.join("; ") if kinds[name] == pl.List(pl.String) else pl.col(name) for name in unused)
         stated += [(name, "alert", statements.alarms(texts[name])) for name in statements.alarming(texts)]
         read = {column.name for column in self._mapping.columns.values()}
         for name, _, each in stated:

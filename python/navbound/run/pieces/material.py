@@ -36,6 +36,7 @@ AUXILIARY = (
     "nac_p",
     "nic",
     "nuc_p",
+    "pic",
     "rc_m",
     "epu_m",
     "sigma_e_m",
