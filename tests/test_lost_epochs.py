@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 import gzip
+import math
 import struct
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 import navbound
 from navbound import gnss
 from navbound.errors import FormatError
+from navbound.examples.files import STATION
+
+if TYPE_CHECKING:
+    from collections.abc import Container
+
+    from navbound.run.directory import Run
 
 
 @pytest.fixture
@@ -131,22 +139,38 @@ def test_a_refused_evaluation_leaves_nothing_behind(whole: tuple[Path, Path], tm
     assert not (tmp_path / "run").exists() or not list((tmp_path / "run").iterdir())
 
 
-@pytest.mark.parametrize(("n_more", "shown"), [(0, True), (1, True), (600, False)])
-def test_a_log_that_goes_on_without_measurements_has_lost_those_epochs(tmp_path: Path, n_more: int, shown: bool) -> None:
-    """The receiver says each second that it has a position, for some seconds longer than the three minutes that it measures."""
-    examples = Path(__file__).parents[1] / "examples" / "data"
-    measured = (examples / "receiver.ubx").read_bytes()
-    times_ns = gnss.read_observations(examples / "receiver.ubx").time_ns
+EXAMPLES = Path(__file__).parents[1] / "examples" / "data"
+
+
+def with_own_positions(log: Path, n: int, *, off_deg: float = 0.0, of: Container[int] = range(10**9)) -> Run:
+    """The example of a log with positions of the receiver itself, each second; some of them are elsewhere."""
+    times_ns = gnss.read_observations(EXAMPLES / "receiver.ubx").time_ns
     begin = datetime(1980, 1, 6, tzinfo=UTC) + timedelta(seconds=int(times_ns[0]) // 10**9 - 18)
     own = b""
-    for second in range(180 + n_more):
+    for second in range(n):
         at = begin + timedelta(seconds=second)
         payload = bytearray(pvt(second)[6:-2])
         struct.pack_into("<IHBBBBBB", payload, 0, 0, at.year, at.month, at.day, at.hour, at.minute, at.second, 0b111)
+        off = off_deg if second in of else 0.0
+        place = (round(1e7 * math.degrees(angle)) for angle in (STATION.lon_rad, STATION.lat_rad + math.radians(off)))
+        struct.pack_into("<ii", payload, 24, *place)
         own += ubx(b"\x01\x07", bytes(payload))
-    log = tmp_path / "log.ubx"
-    log.write_bytes(measured + own)
-    run = navbound.analyze([log, examples / "receiver-broadcast.rnx"], solve=True)
+    log.write_bytes((EXAMPLES / "receiver.ubx").read_bytes() + own)
+    return navbound.analyze([log, EXAMPLES / "receiver-broadcast.rnx"], solve=True)
+
+
+@pytest.mark.parametrize(("off_deg", "of", "shown"), [(0.01, range(180), True), (0.02, range(180), False), (0.5, range(1), True)])
+def test_a_receiver_that_was_elsewhere_speaks_against_the_solved_positions(tmp_path: Path, off_deg: float, of: range, shown: bool) -> None:
+    """0.01 degrees are 1.1 km, 0.02 degrees 2.2 km; the first position after a cold start may be anywhere."""
+    verdict = with_own_positions(tmp_path / "log.ubx", 180, off_deg=off_deg, of=of).summary.verdict
+    assert any("the receiver's own position is more than 1852 m" in words for words in verdict.position_doubts) != shown
+    assert (verdict.id == "inside") == shown
+
+
+@pytest.mark.parametrize(("n_more", "shown"), [(0, True), (1, True), (600, False)])
+def test_a_log_that_goes_on_without_measurements_has_lost_those_epochs(tmp_path: Path, n_more: int, shown: bool) -> None:
+    """The receiver says each second that it has a position, for some seconds longer than the three minutes that it measures."""
+    run = with_own_positions(tmp_path / "log.ubx", 180 + n_more)
     verdict = run.summary.verdict
     assert (verdict.id == "inside") == shown
     assert any("the log holds no measurements" in words for words in run.summary.assumptions) != shown

@@ -14,11 +14,12 @@ from navbound.gnss.constellation_doubts import contradicting
 from navbound.gnss.files import navigation_of, observations_of
 from navbound.gnss.receivers import unused_words
 from navbound.read import formats
-from navbound.read.checks.places import header_against
+from navbound.read.checks.places import east_north_m, header_against
 from navbound.read.checks.refusals import of_navigation, of_observations, skipped_words, without_epochs
 from navbound.read.checks.repeats import left_out, separate
 from navbound.read.checks.statements import STALE_AFTER_S
 from navbound.read.tables.epochs import Reading
+from navbound.read.tables.further import PLACES_APART_M
 from navbound.records.material import LEFT_OUT
 from navbound.records.run import Rejection
 from navbound.run.inputs.solving import Solving, require_same_time
@@ -26,6 +27,8 @@ from navbound.status import REASONS
 from navbound.time import utc_text
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from navbound.read.source import Source
     from navbound.run.inputs.files import Files
 
@@ -46,17 +49,50 @@ def solved(files: Files, solving: Solving | None = None) -> list[Reading]:
     return readings
 
 
-def _unmeasured(source: Source, observations: gnss.Observations) -> tuple[pl.DataFrame, list[str]]:
-    """The times of a log at which its receiver had a position and left no measurements: an epoch that nothing can be solved at."""
-    none: tuple[pl.DataFrame, list[str]] = (pl.DataFrame(schema=LEFT_OUT), [])
+OWN_APART_M = PLACES_APART_M
+"""The receiver's own position, of the same signals, contradicts the solved one beyond it. Provenance: ours. [m]"""
+OWN_APART_SHARE = 0.01
+"""Share of epochs up to which it may: the first ones after a cold start. Provenance: ours. [1]"""
+
+
+def _own(source: Source) -> pl.DataFrame | None:
+    """The positions of the receiver itself, where its log holds any."""
     path, content = source.plain()
     read = formats.of(content, path.name).read
     if read is None:
-        return none
+        return None
     try:
-        own_ns = read(replace(source, content=content)).epochs["time_ns"].drop_nulls().unique().sort().to_numpy()
+        return read(replace(source, content=content)).epochs.drop_nulls("time_ns").sort("time_ns")
     except FormatError:
+        return None
+
+
+def _against_own(path: Path, known: pl.DataFrame, own: pl.DataFrame) -> list[str]:
+    """A doubt where the receiver was somewhere else than the solved positions are."""
+    of_own = own.select("time_ns", own_lat="est_lat_rad", own_lon="est_lon_rad").drop_nulls().unique("time_ns").sort("time_ns")
+    nearest = known.select("time_ns", "est_lat_rad", "est_lon_rad").sort("time_ns")
+    both = nearest.join_asof(of_own, on="time_ns", strategy="nearest", tolerance=_SAME_NS).drop_nulls()
+    apart = east_north_m(both.select("est_lat_rad", "est_lon_rad").to_numpy(), both.select("own_lat", "own_lon").to_numpy())
+    apart_m = np.hypot(apart[:, 0], apart[:, 1])
+    n_far = int((apart_m > OWN_APART_M).sum())
+    if n_far <= OWN_APART_SHARE * both.height:
+        return []
+    return [
+        f"{path.name}: at {n_far} of {both.height} epochs the receiver's own position is more than {OWN_APART_M:.0f} m from the solved "
+        f"one, the furthest {apart_m.max():.0f} m: one of them is wrong, and a truth decides which"
+    ]
+
+
+_SAME_NS = 500_000_000
+"""Positions so near in time are of one epoch. [ns]"""
+
+
+def _unmeasured(source: Source, observations: gnss.Observations, own: pl.DataFrame | None) -> tuple[pl.DataFrame, list[str]]:
+    """The times of a log at which its receiver had a position and left no measurements: an epoch that nothing can be solved at."""
+    none: tuple[pl.DataFrame, list[str]] = (pl.DataFrame(schema=LEFT_OUT), [])
+    if own is None:
         return none
+    own_ns = own["time_ns"].unique().sort().to_numpy()
     measured_ns = np.unique(observations.time_ns)
     step_ns = float(np.median(np.diff(measured_ns))) if measured_ns.size > 1 else 0.0
     beside = np.searchsorted(measured_ns, own_ns)
@@ -68,8 +104,8 @@ def _unmeasured(source: Source, observations: gnss.Observations) -> tuple[pl.Dat
         return none
     times = " to ".join(utc_text(int(time_ns)) for time_ns in (alone_ns[0], alone_ns[-1]))
     words = (
-        f"{path.name}: at {alone_ns.size} of the {own_ns.size} times at which the receiver itself had a position ({times} UTC) the log "
-        f"holds no measurements within {within_ns * 1e-9:.3g} s: nothing is solved there, and they count as missing"
+        f"{source.path.name}: at {alone_ns.size} of the {own_ns.size} times at which the receiver itself had a position ({times} UTC) the "
+        f"log holds no measurements within {within_ns * 1e-9:.3g} s: nothing is solved there, and they count as missing"
     )
     return left_out(pl.DataFrame({"track": [source.stem] * alone_ns.size, "time_ns": alone_ns})), [words]
 
@@ -113,7 +149,8 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
     notes += [f"{source.path.name}: {count} satellite-epochs not used: {gnss.UNUSED[why]}" for why, count in solution.unused.items()]
     # Epochs that cannot be read were measured all the same; nobody knows when.
     unread = pl.DataFrame({"track": [source.stem] * observations.n_lost_epochs, "time_ns": None})
-    unmeasured, words = _unmeasured(source, observations)
+    own = _own(source)
+    unmeasured, words = _unmeasured(source, observations, own)
     notes += words
     lost = pl.concat([left_out(without), left_out(repeats.contradicting), left_out(unread), unmeasured])
     columns = {"est_lat_rad": "solved from " + ", ".join(c for codes in solution.codes.values() for c in codes)}
@@ -125,6 +162,6 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
         columns=columns,
         left_out=lost,
         position_doubts=doubts,
-        place_doubts=header.doubts,
+        place_doubts=[*header.doubts, *(() if own is None else _against_own(source.path, known, own))],
         satellites=solution.heard,
     )
