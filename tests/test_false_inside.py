@@ -316,7 +316,7 @@ def test_an_error_that_the_table_states_itself_is_weighed(tmp_path: Path, name: 
     result = run(tmp_path, **{name: stated})
     verdict = result.summary.verdict
     assert (verdict.id, verdict.inside, verdict.n_stated_beyond) == ("not_shown", None, 1)
-    assert "The recording itself states an error beyond RNP at 1 epochs." in verdict.words
+    assert "The recording itself states an error beyond RNP at 1 epoch." in verdict.words
     assert result.epochs["stated_error_m"].max() == 5000.0
     assert run(tmp_path, **{name: np.full(N, 10.0)}).summary.verdict.id == "inside"
 

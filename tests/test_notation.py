@@ -43,7 +43,7 @@ WORDS = {
 }
 SUFFIXES = ("_m", "_m2", "_s", "_ns", "_rad", "_mps", "_mps2", "_radps", "_hpa", "_dbhz")
 UNITLESS = ("p_", "n_")
-DIMENSIONLESS = {"pdop", "hdop", "vdop", "gdop", "innovation_memory", "nac_p", "nic", "nuc_p", "over_tta", "flight", "nees"}
+DIMENSIONLESS = {"pdop", "hdop", "vdop", "gdop", "innovation_memory", "nac_p", "nic", "pic", "nuc_p", "over_tta", "flight", "nees"}
 DIMENSIONLESS |= {f"innovation_{of}" for of in ("range", "station", "baro")}
 ENDINGS = ("_square", "_lag_one", "_memory_max")
 """Squares, correlations and memories of normalised innovations."""

@@ -678,6 +678,8 @@ export interface Verdict {
     n_stated_beyond: number;
     /** The same where it states an alert. */
     n_stated_alert: number;
+    /** What it states there, and in which column: the first few. */
+    stated_alerts: string[];
     /** The same where it states a 95 % radius that is larger than its covariance allows. */
     n_stated_worse: number;
     /** The same where it states a containment radius (Rc, NIC) beyond twice RNP, or none. */

@@ -22,9 +22,11 @@ fn settings() -> Settings {
         track: TrackId::new("receiver").unwrap(),
         statements: Arc::new(Statements::new(
             vec![
-                (vec!["valid".into()], vec!["1".into(), "true".into()], None),
-                (vec!["epu_m".into(), "hpl".into()], vec![], None),
-                (vec!["hdop".into()], vec![], Some(30.0)),
+                (vec!["valid".into()], vec!["1".into(), "true".into()], None, None),
+                (vec!["epu_m".into(), "hpl".into()], vec![], None, None),
+                (vec!["hdop".into()], vec![], None, Some(30.0)),
+                (vec!["nSats".into()], vec!["null".into()], Some(3.0), None),
+                (vec!["spoofed".into(), "nav_fault".into()], vec!["0".into(), "false".into()], None, None),
             ],
             vec!["stopped".into()],
         )),
@@ -741,8 +743,44 @@ fn positions_that_are_flown_faster_than_their_time_stamps_go_on_are_not_believed
 /// What a line says under keys that are none of the contract: heard where it is a statement, otherwise counted by name.
 #[test]
 fn a_statement_under_another_key_is_heard_and_every_other_key_is_counted() {
-    let against = ["\"valid\":false", "\"Valid\":0", "\"valid\":null", "\"valid\":[1]", "\"epu_m\":5.0", "\"HPL\":10.0", "\"hdop\":31"];
-    let fine = ["\"valid\":true", "\"valid\":1.0", "\"hdop\":1.5", "\"comment\":\"x\"", "\"nav_mode\":\"nav\""];
+    let deep = format!("\"a\":{}1{}", "[".repeat(200), "]".repeat(200));
+    let against = [
+        "\"valid\":false",
+        "\"Valid\":0",
+        "\"valid\":null",
+        "\"valid\":[1,0]",
+        "\"epu_m\":5.0",
+        "\"HPL\":10.0",
+        "\"hdop\":31",
+        "\"hdop\":\"31\"",
+        "\"n_sats\":2",
+        "\"gps\":{\"valid\":false}",
+        "\"a\":{\"b\":{\"valid\":false}}",
+        "\"nav\":{\"fault\":true}",
+        "\"a\":[{\"valid\":0}]",
+        "\"flags\":[\"ok\",\"spoofed\"]",
+        "\"flags\":\"OK|SPOOFED\"",
+        "\"note\":\"NAV FAULT\"",
+        // What cannot be read to its end.
+        "\"n\":1e999",
+        "\"n\":\"\\ud800\"",
+        &deep,
+    ];
+    let fine = [
+        "\"valid\":true",
+        "\"valid\":1.0",
+        "\"valid\":[]",
+        "\"hdop\":1.5",
+        "\"hdop\":\"1.5\"",
+        "\"comment\":\"x\"",
+        "\"nav_mode\":\"nav\"",
+        "\"n_sats\":7",
+        "\"n_sats\":null",
+        "\"gps\":{\"valid\":true}",
+        "\"flags\":[\"ok\"]",
+        "\"spoofed\":[]",
+        "\"what\":\"valid\"",
+    ];
     for (keys, status) in
         [(&against[..], Status::InvalidInput), (&fine[..], Status::Ok), (&["\"nav_mode\":\"Stopped\""][..], Status::NotAvailable)]
     {

@@ -26,7 +26,7 @@ fn refused(e: OutOfDomain) -> PyErr {
 /// RNP \[m\] and corners \[rad\] of an area.
 type ZoneRow = (f64, Vec<(f64, f64)>);
 /// Names of keys, words that say nothing against the position, largest number that says nothing.
-type StatementRow = (Vec<String>, Vec<String>, Option<f64>);
+type StatementRow = navbound_live::StatementRow;
 /// Name of a track, its path and its RNP \[m\].
 type TrackRow<'py> = (String, Option<PyRef<'py, Path>>, Option<f64>);
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from navbound.read.checks.statements import BARE_LENGTHS, KINDS, kind_of, speaks_of_integrity
-from navbound.read.quantities import POSITION_TIME_NAMES, QUANTITIES, STATED_QUANTITIES, UNITS
+from navbound import _core
+from navbound.read.checks.statements import BARE_LENGTHS, BEFORE, KINDS, kind_of, speaks_of_integrity
+from navbound.read.quantities import POSITION_TIME_NAMES, QUANTITIES, QUANTITY, STATED_QUANTITIES, UNITS
 from navbound.table.columns import COVARIANCE
 
 if TYPE_CHECKING:
@@ -16,22 +17,29 @@ _JUDGED = frozenset({"sigma_e_m", "sigma_n_m", "epu_m", "rc_m", "nac_p", "nic", 
 """Quantities of tables that bound a position or speak for it. Under a name that is none of the contract their value is not understood."""
 _CONTRACT = ("sigma_m", "rnp_m")
 """Keys of the contract that no table has: written otherwise, they are none of it."""
+_CONTRACT_COUNTS = ("n_sv",)
+"""The same of numbers of satellites: a key of the contract."""
 _USABLE_MODES = frozenset({"coasting"})
 """Modes of navbound's own tables in which a position is usable; its status says how well."""
 
-Kinds = list[tuple[list[str], list[str], float | None]]
+Kinds = list[tuple[list[str], list[str], float | None, float | None]]
 
 
 def for_core() -> tuple[Kinds, list[str]]:
-    """Kinds as names, words that say nothing against the position and the largest such number; and words of ``nav_mode`` against it."""
+    """Kinds as names, words and the range of numbers that say nothing against the position; and words of ``nav_mode`` against it."""
     judged = [q for q in QUANTITIES if q.name in _JUDGED] + [q for q in STATED_QUANTITIES if q.name != "alert"]
     named = [*_CONTRACT, *POSITION_TIME_NAMES, *sorted(BARE_LENGTHS), *(name for q in judged for name in (q.name, *q.aliases))]
     lengths = {name.removesuffix("_m") for q in judged if q.si == "m" for name in (q.name, *q.aliases)} | BARE_LENGTHS
-    kinds: Kinds = [([*named, *(f"{name}_{unit}" for name in sorted(lengths) for unit in UNITS["m"])], [], None)]
+    kinds: Kinds = [([*named, *(f"{name}_{unit}" for name in sorted(lengths) for unit in UNITS["m"])], [], None, None)]
+    satellites = QUANTITY["n_sv"]
+    counts = [name for name in satellites.aliases if name not in _CONTRACT_COUNTS]
+    kinds.append((counts, ["null", "", "nan"], float(_core.DETERMINING_SATELLITES), None))
     for kind in KINDS:
-        several = [f"{name}s" for name in kind.names] if kind.effect == "alert" else []
+        spelled = kind.names | {f"{before}_{name}" for name in kind.names for before in BEFORE}
+        several = [f"{name}s" for name in spelled] if kind.effect == "alert" else []
         # What bounds a position in a table is understood under no other name than the contract's.
-        kinds.append((sorted({*kind.names, *several}.difference(named)), sorted(kind.fine), None if math.isinf(kind.above) else kind.above))
+        least, most = (None if math.isinf(each) else each for each in (kind.below, kind.above))
+        kinds.append((sorted({*spelled, *several}.difference(named)), sorted(kind.fine), least, most))
     mode = kind_of("nav_mode")
     return kinds, sorted((mode.against if mode is not None else frozenset()) - _USABLE_MODES)
 

@@ -143,6 +143,8 @@ class Verdict(Record):
     """Epochs with status ok or degraded where the recording itself states an error beyond RNP."""
     n_stated_alert: int = 0
     """The same where it states an alert."""
+    stated_alerts: list[str] = Field(default_factory=list)
+    """What it states there, and in which column: the first few."""
     n_stated_worse: int = 0
     """The same where it states a 95 % radius that is larger than its covariance allows."""
     n_stated_uncontained: int = 0

@@ -6,7 +6,7 @@ mod receiver;
 mod statements;
 
 pub(crate) use statements::PassedOver;
-pub use statements::Statements;
+pub use statements::{StatementRow, Statements};
 
 use crate::claims::Claims;
 use crate::codec::{Damaged, Reader, Writer};

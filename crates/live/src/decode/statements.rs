@@ -18,26 +18,62 @@ pub struct Statements {
 #[derive(Debug, Clone, PartialEq)]
 struct Kind {
     fine: BTreeSet<String>,
-    most: Option<f64>,
+    /// The smallest and the largest number that says nothing.
+    within: [Option<f64>; 2],
 }
 
+impl Kind {
+    /// Whether a value, or any value of a list, speaks against the position.
+    fn against(&self, value: &Value) -> bool {
+        if let Value::Array(all) = value {
+            return all.iter().any(|each| self.against(each));
+        }
+        let number = value.as_f64().or_else(|| value.as_str().and_then(|text| text.trim().parse().ok()));
+        let [least, most] = self.within;
+        let ranged = least.is_some() || most.is_some();
+        let within = number.is_some_and(|n: f64| ranged && least.is_none_or(|least| n >= least) && most.is_none_or(|most| n <= most));
+        !within && !self.fine.contains(&word(value))
+    }
+
+    /// Whether it is a flag that is raised against a position: where it is not raised it says nothing.
+    fn is_flag(&self) -> bool {
+        self.fine.contains("false")
+    }
+}
+
+/// Kinds of statements: names, words that say nothing against the position, the smallest and the largest number that says nothing.
+pub type StatementRow = (Vec<String>, Vec<String>, Option<f64>, Option<f64>);
+
 impl Statements {
-    /// Of kinds: their names, the words that say nothing against the position, and the largest number that says nothing; and of words of
-    /// `nav_mode` that do.
-    pub fn new(kinds: Vec<(Vec<String>, Vec<String>, Option<f64>)>, modes: Vec<String>) -> Self {
+    /// Of kinds, and of words of `nav_mode` that speak against the position.
+    pub fn new(kinds: Vec<StatementRow>, modes: Vec<String>) -> Self {
         let mut all = Self { modes: modes.into_iter().collect(), ..Self::default() };
-        for (names, fine, most) in kinds {
+        for (names, fine, least, most) in kinds {
             all.by_name.extend(names.into_iter().map(|name| (plain(&name), all.kinds.len())));
-            all.kinds.push(Kind { fine: fine.into_iter().collect(), most });
+            all.kinds.push(Kind { fine: fine.into_iter().collect(), within: [least, most] });
         }
         all
     }
 
-    /// Whether a value speaks against its position; `None` where the key makes no statement that is known.
+    fn kind(&self, key: &str) -> Option<&Kind> {
+        self.kinds.get(*self.by_name.get(&plain(key))?)
+    }
+
+    /// Whether a value speaks against its position; `None` where neither the key nor anything in the value is a statement that is known.
+    /// Within an object a name is one of its own, and one behind that of the object; a text is a list of flags that are raised.
     fn speaks_against(&self, key: &str, value: &Value) -> Option<bool> {
-        let kind = self.kinds.get(*self.by_name.get(&plain(key))?)?;
-        let small = kind.most.zip(value.as_f64()).is_some_and(|(most, number)| number <= most);
-        Some(!small && !kind.fine.contains(&word(value)))
+        let any = |spoken: &mut dyn Iterator<Item = bool>| spoken.reduce(|one, other| one || other);
+        match value {
+            Value::Object(inner) => any(&mut inner.iter().filter_map(|(name, each)| {
+                self.speaks_against(&format!("{key}_{name}"), each).or_else(|| self.speaks_against(name, each))
+            }))
+            // What is said of a position in words that nobody knows speaks against it.
+            .or_else(|| self.kind(key).map(|_| true)),
+            _ if self.kind(key).is_some() => self.kind(key).map(|kind| kind.against(value)),
+            Value::Array(all) => any(&mut all.iter().filter_map(|each| self.speaks_against(key, each))),
+            Value::String(text) => text.split([',', ';', '|']).any(|flag| self.kind(flag).is_some_and(Kind::is_flag)).then_some(true),
+            _ => None,
+        }
     }
 
     /// Whether a position that is kept in this way is none.
@@ -103,10 +139,11 @@ impl PassedOver {
     }
 }
 
-/// Whether a line speaks against its position under a key that is not `known`; the other such keys are counted.
+/// Whether a line speaks against its position under a key that is not `known`; the other such keys are counted. One that cannot be read to
+/// its end (a number that is none, half of a character, a hundred brackets) may say anything, and is not believed.
 pub(super) fn heard(line: &[u8], known: &[&str], statements: &Statements, passed_over: &mut PassedOver) -> bool {
     let mut from = serde_json::Deserializer::from_slice(line);
-    from.deserialize_map(Others { known, statements, passed_over }).unwrap_or(false)
+    from.deserialize_map(Others { known, statements, passed_over }).unwrap_or(true)
 }
 
 struct Others<'a> {

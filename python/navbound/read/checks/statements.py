@@ -108,34 +108,28 @@ _ALARM_FLAGS = (
 NO_INTEGRITY = _words("n no none off false")
 """Words that state that there is no integrity or no monitor, where the column is named by what it has."""
 
-AGE = Kind(
-    "invalid",
-    _words(
-        "age_s position_age position_age_s pos_age pos_age_s fix_age fix_age_s age_of_position age_of_position_s data_age_s seen_pos "
-        "seen_pos_s gps_age gps_age_s gnss_age gnss_age_s last_pos_age last_pos_age_s last_position_age last_position_age_s age_sec "
-        "data_age pos_age_sec position_age_sec fix_age_sec time_since_fix time_since_last_fix time_since_last_fix_s "
-        "seconds_since_update seconds_since_last_update seconds_since_fix time_since_update_s time_since_fix_s "
-        "pos_delay pos_delay_s position_delay position_delay_s fix_delay fix_delay_s pos_latency pos_latency_s position_latency "
-        "position_latency_s staleness staleness_s dt_fix dt_fix_s tow_age tow_age_s"
-    ),
-    frozenset(),
-    frozenset(),
-    above=STALE_AFTER_S,
-    below=-STALE_AFTER_S,
+_AGES = _words(
+    "position_age pos_age fix_age age_of_position age_of_fix seen_pos gps_age gnss_age last_pos_age last_position_age last_fix_age "
+    "time_since_fix time_since_last_fix time_since_last_update time_since_update pos_delay position_delay fix_delay pos_latency "
+    "position_latency fix_latency staleness dt_fix tow_age data_age gps_latency gnss_latency"
+)
+_SECONDS, _MILLISECONDS = _words("s sec secs seconds"), _words("ms msec millis milliseconds")
+
+
+def _age(names: frozenset[str], per_s: float) -> Kind:
+    return Kind("invalid", names, frozenset(), frozenset(), above=per_s * STALE_AFTER_S, below=-per_s * STALE_AFTER_S)
+
+
+AGE = _age(
+    _AGES
+    | {f"{name}_{unit}" for name in _AGES for unit in _SECONDS}
+    | {f"age_{unit}" for unit in _SECONDS}
+    | _words("seconds_since_update seconds_since_last_update seconds_since_fix seconds_since_last_fix"),
+    1.0,
 )
 """The age of a position, in seconds; it dates the position, too. One that is of the future is of another clock."""
 
-AGE_MS = Kind(
-    "invalid",
-    _words(
-        "position_age_ms pos_age_ms fix_age_ms age_of_position_ms seen_pos_ms time_since_fix_ms pos_delay_ms position_delay_ms "
-        "fix_delay_ms pos_latency_ms position_latency_ms staleness_ms"
-    ),
-    frozenset(),
-    frozenset(),
-    above=1e3 * STALE_AFTER_S,
-    below=-1e3 * STALE_AFTER_S,
-)
+AGE_MS = _age(frozenset(f"{name}_{unit}" for name in _AGES for unit in _MILLISECONDS), 1e3)
 """The same in milliseconds."""
 
 AGES = ((AGE, 1.0), (AGE_MS, 1e-3))
@@ -157,6 +151,9 @@ READSB_TYPE = Kind(
     empty_against=True,
 )
 """The `type` of readsb's aircraft, by the rule of its live lines."""
+
+_LEAST = 1e-9
+"""A number above nothing. [1]"""
 
 KINDS: tuple[Kind, ...] = (
     Kind(
@@ -294,9 +291,10 @@ KINDS: tuple[Kind, ...] = (
     # The least of a scale is none, whatever the scale; the others are named.
     Kind(
         "alert",
-        _words("trust trust_level confidence confidence_level integrity_level"),
+        _words("trust trust_level confidence confidence_level"),
         _words("0 none no low very_low poor false untrusted unreliable"),
         _words("high very_high full true yes"),
+        below=_LEAST,
     ),
     Kind(
         "alert",
@@ -317,7 +315,8 @@ KINDS: tuple[Kind, ...] = (
             "raim_flag unhealthy unsafe rejected bad frozen stale stuck mock mocked is_mock mock_location is_mocked from_mock_provider "
             "unable_req_nav_perf unable_required_navigation_performance unable_nav_perf anp_alert faulty suspicious fail failed "
             "mi sim simulator reverted reversion nav_accuracy_downgraded navaccuracydowngrad "
-            "is_from_mock_provider simulated_location"
+            "is_from_mock_provider simulated_location untrusted fake ghost false_target bad_position bad_pos bad_fix excluded masked "
+            "discarded discard flagged dnu rnp_unable unable map_shift gps_primary_lost loss_of_gps loss_of_gnss not_to_be_used"
         )
         | _ALARM_FLAGS,
         frozenset(),
@@ -347,11 +346,19 @@ _SPEAKS = _words(
 """Parts of names that speak of validity, accuracy or integrity. Provenance: ours."""
 
 
+BEFORE = ("is", "has")
+"""Words before a name that change nothing of it."""
+
+
 def kind_of(plain_name: str) -> Kind | None:
     """The kind of statement that a column of this name makes; None for any other column."""
     name = plain_name.replace("_", "")
-    several = _BY_NAME.get(name.removesuffix("s"))
-    return _BY_NAME.get(name, several if several is not None and several.effect == "alert" else None)
+    for each in (name, *(name.removeprefix(before) for before in BEFORE)):
+        several = _BY_NAME.get(each.removesuffix("s"))
+        kind = _BY_NAME.get(each, several if several is not None and several.effect == "alert" else None)
+        if kind is not None:
+            return kind
+    return None
 
 
 _ACCURACY = _words(

@@ -10,7 +10,7 @@ import polars as pl
 
 from navbound.errors import FormatError
 from navbound.read.checks.rejections import Rejections, Tally
-from navbound.read.checks.repeats import left_out
+from navbound.read.checks.repeats import left_out, unread_rows
 from navbound.read.pieces.chunks import CHUNK_BYTES, Chunks
 from navbound.read.pieces.order import Pieces
 from navbound.read.pieces.parquet import batches, is_parquet
@@ -145,7 +145,7 @@ class _FirstPass:
     unit = "line"
 
     def __init__(self, path: Path, columns: Mapping[str, str] | None, stride: int) -> None:
-        self.path, self.stride, self.n_rows = path, stride, 0
+        self.path, self.stride, self.n_rows, self.n_unread = path, stride, 0, 0
         self.parts, self.places = Spool(), list[tuple[int, int]]()
         self.sample, self.names = list[pl.DataFrame](), set[str | None]()
         self.rejections = Rejections(path, self.unit)
@@ -216,6 +216,7 @@ class _OfText(_FirstPass):
         rows = rows_of(self.path, self._layout, lines)
         self.n_rows += rows.n_rows
         if rows.bad is not None:
+            self.n_unread += rows.bad[1]
             before = self._bad or (rows.bad[0], 0, *rows.bad[2:])
             self._bad = (before[0], before[1] + rows.bad[1], *before[2:])
         self.keep(rows.frame)
@@ -281,7 +282,7 @@ def _second_pass(first: _FirstPass, every: int) -> PiecedReading:
         unused=first.mapping.unused,
         notes=values.notes,
         columns=values.described(),
-        left_out=pl.concat(without),
+        left_out=pl.concat([*without, unread_rows(source.stem, first.n_unread)]),
         names=[name for name in names if pieces.has(name)],
         with_levels=with_levels,
         pieces=pieces,

@@ -13,7 +13,7 @@ from navbound.errors import FormatError
 from navbound.read.checks import levels
 from navbound.read.checks.places import NO_PLACE, Nowhere
 from navbound.read.checks.rejections import Rejections, Tally
-from navbound.read.checks.repeats import left_out
+from navbound.read.checks.repeats import left_out, unread_rows
 from navbound.read.checks.stated import of_counted_satellites
 from navbound.read.source import Source, load
 from navbound.read.tables.columns import POSITION, Assignment, assign, truth_as_position
@@ -140,7 +140,7 @@ def _epochs(source: Source, content: Table, mapping: Assignment, required: Seque
     out, contradicting = _in_order(out, rejections, values.notes, whole_seconds=values.whole_seconds and not beside)
     rejections.refuse_if_too_many(content.n_rows)
     _not_empty(source, out, rejections)
-    lost = pl.concat([without, left_out(contradicting)])
+    lost = pl.concat([without, unread_rows(source.stem, content.n_rows - content.frame.height), left_out(contradicting)])
     of_file = (source.record(content.n_rows), rejections.records, mapping.unused, values.notes, values.described(), lost)
     return Reading(out.drop(LINE), *of_file, unread=values.unread, position_doubts=values.doubts())
 

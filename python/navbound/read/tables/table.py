@@ -170,6 +170,7 @@ def layout_of(path: Path, lines: pl.DataFrame) -> Layout:
         A name that stands twice; fields that blanks separate.
     """
     header = str(lines["text"][0])
+    _require_line_ends(path, lines.head(1), pl.col("text"))
     separator = max(_SEPARATORS, key=header.count)
     if separator not in header and len(header.split()) > 2:
         what = f"no {_SEPARATOR_WORDS} in “{header[:60]}”: blanks separate no fields"
@@ -231,6 +232,7 @@ def rows_of(path: Path, layout: Layout, lines: pl.DataFrame) -> Rows:
     """
     # Separators within quotation marks do not count; a quotation mark that is left over opens a field that does not end.
     bare = pl.col("text").str.replace_all(r'"[^"]*"', "")
+    _require_line_ends(path, lines, bare)
     counted = lines.with_columns(n=bare.str.count_matches(layout.separator, literal=True) + 1, open=bare.str.contains('"', literal=True))
     n_fields = len(layout.names)
     # Of a field in quotation marks nothing stands behind the second of them.
@@ -241,7 +243,8 @@ def rows_of(path: Path, layout: Layout, lines: pl.DataFrame) -> Rows:
     refused = None
     if not bad.is_empty():
         text, line, n, _ = bad.row(0)
-        refused = (f"a row with another number of fields than the header's {n_fields} (first: {n})", bad.height, line, text)
+        what = f"first: {n}" if n != n_fields else "first: a quotation mark that does not enclose a field"
+        refused = (f"a row with another number of fields than the header's {n_fields} ({what})", bad.height, line, text)
     body = "\n".join([layout.header, *good["text"].to_list()]).encode()
     schema = dict.fromkeys(map(str, range(n_fields)), pl.String)
     try:
@@ -255,6 +258,13 @@ def rows_of(path: Path, layout: Layout, lines: pl.DataFrame) -> Rows:
     named = {str(i): name for i, name in enumerate(layout.names) if name}
     frame = _split(frame.select(named.keys()).rename(named), layout.pair)
     return Rows(frame.with_columns(good[LINE]), counted.height, refused)
+
+
+def _require_line_ends(path: Path, lines: pl.DataFrame, text: pl.Expr) -> None:
+    """Refuse lines that end in CR alone: two rows and more would be one, with too many fields."""
+    joined = lines.filter(text.str.contains("\r", literal=True))
+    if not joined.is_empty():
+        raise FormatError(path, "lines end in CR alone (\\r); write LF (\\n) or CR LF at their ends", int(joined[LINE][0]))
 
 
 def _names(path: Path, header: str, separator: str) -> list[str]:
@@ -352,7 +362,7 @@ def _json(source: Source) -> Table:
 
 def _json_of(source: Source) -> Any:
     """One value, or an object a line."""
-    decoder = json.JSONDecoder(object_pairs_hook=lambda pairs: _unrepeated(source, pairs))
+    decoder = json.JSONDecoder(object_pairs_hook=lambda pairs: _unrepeated(source, pairs), parse_int=_whole_number)
     text = source.text()
     try:
         return _whole_characters(source, text, decoder.decode(text))
@@ -367,6 +377,15 @@ def _json_of(source: Source) -> Any:
             except json.JSONDecodeError as e:
                 raise FormatError(source.path, f"not an object of JSON on each line: {e.msg}", number) from e
     return _whole_characters(source, text, records)
+
+
+_MOST_DIGITS = 20
+"""Those of an integer of 64 bits with its sign. [1]"""
+
+
+def _whole_number(text: str) -> int | float:
+    """An integer; one that no column of integers holds is a number as large, or infinite."""
+    return int(text) if len(text) <= _MOST_DIGITS else float(text)
 
 
 def _whole_characters(source: Source, text: str, content: Any) -> Any:

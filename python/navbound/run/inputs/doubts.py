@@ -9,6 +9,7 @@ import polars as pl
 from navbound.read.checks.neighbours import Neighbours
 from navbound.read.checks.plausible import Limits
 from navbound.read.checks.stated import ALERT, CONTAINMENT, ERROR, WORSE
+from navbound.read.checks.statements import SHOWN
 from navbound.status import USABLE
 
 if TYPE_CHECKING:
@@ -32,6 +33,8 @@ class Doubts:
     n_stated_beyond, n_stated_alert, n_stated_worse, n_stated_uncontained, n_stated_against : int
         Epochs with status ok or degraded where the recording itself states an error beyond RNP, an alert, an accuracy worse than its
         covariance, a containment radius beyond twice RNP, or any of these.
+    stated_alerts : dict of str
+        The first few alerts that it states; keys alone count.
     n_without_level : int
         Judged epochs of tracks whose column of horizontal protection levels holds none: no column of nothing may stand for a level.
     neighbours : Neighbours or None
@@ -47,6 +50,7 @@ class Doubts:
         self._with_levels = with_levels
         self._last: tuple[str, int] | None = None
         self.n_stated_beyond = self.n_stated_worse = self.n_stated_alert = self.n_stated_uncontained = self.n_stated_against = 0
+        self.stated_alerts: dict[str, None] = {}
         self.n_without_level = self.n_long_steps = 0
         self.longest_step_s: float | None = None
 
@@ -69,6 +73,9 @@ class Doubts:
         counts = margins.select(usable.alias("_usable"), **each, any=beyond | alert | worse | uncontained)
         self.n_stated_beyond += int(counts["beyond"].sum())
         self.n_stated_alert += int(counts["alert"].sum())
+        if counts["alert"].any() and len(self.stated_alerts) < SHOWN:
+            words = margins.filter(counts["alert"])[ALERT].unique(maintain_order=True).head(SHOWN)
+            self.stated_alerts = dict.fromkeys([*self.stated_alerts, *words][:SHOWN])
         self.n_stated_worse += int(counts["worse"].sum())
         self.n_stated_uncontained += int(counts["uncontained"].sum())
         self.n_stated_against += int(counts["any"].sum())

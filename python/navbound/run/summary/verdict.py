@@ -125,6 +125,7 @@ def verdict_of(
         n_known_beyond=facts.n_known_beyond,
         n_stated_beyond=known.doubts.n_stated_beyond,
         n_stated_alert=known.doubts.n_stated_alert,
+        stated_alerts=list(known.doubts.stated_alerts),
         n_stated_worse=known.doubts.n_stated_worse,
         n_stated_uncontained=known.doubts.n_stated_uncontained,
         unread=material.unread,

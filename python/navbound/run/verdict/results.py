@@ -9,7 +9,7 @@ import numpy as np
 from navbound import _core
 from navbound.read.checks.statements import speaks_of_accuracy, speaks_of_level
 from navbound.read.tables.columns import declare
-from navbound.run.verdict.numbers import length, level, share
+from navbound.run.verdict.numbers import epochs, length, level, share
 from navbound.run.verdict.procedure import beside_procedure_words, incomplete_words
 from navbound.run.verdict.rule import FEW_EPOCHS, has_approaches
 from navbound.run.verdict.words import COPIED, contradicted_words, covered_words, refuted_words, short_words, truth_words
@@ -45,8 +45,7 @@ def verdict_words(
     parts = [f"{assumed}: {first[0].lower()}{first[1:]}" if assumed else first]
     if verdict.id == "not_shown":
         parts += _not_shown(verdict)
-    if verdict.id != "inside":
-        parts += _reasons(verdict)
+    parts += _reasons(verdict)
     n_before_worst = len(parts)
     parts += [f"{doubt}." for doubt in verdict.position_doubts]
     parts += incomplete_words(verdict.beside)
@@ -131,9 +130,11 @@ _MOST_REASONS = 3
 
 def _reasons(verdict: Verdict) -> list[str]:
     """Why epochs are not ok: the most frequent reasons."""
-    named = [f"{REASONS[id_].words if id_ in REASONS else id_} ({n})" for id_, n in list(verdict.n_reason.items())[:_MOST_REASONS]]
+    # To say that there is one more takes as long as to name it.
+    most = _MOST_REASONS + (len(verdict.n_reason) == _MOST_REASONS + 1)
+    named = [f"{REASONS[id_].words if id_ in REASONS else id_} ({n})" for id_, n in list(verdict.n_reason.items())[:most]]
     more = len(verdict.n_reason) - len(named)
-    also = f"; {more} more reasons" if more > 1 else "; one more reason" if more else ""
+    also = f"; {more} more reasons" if more else ""
     return [f"Epochs that are not ok: {'; '.join(named)}{also}."] if named else []
 
 
@@ -182,18 +183,19 @@ def _not_shown(verdict: Verdict) -> list[str]:
     if verdict.belief is not None and verdict.belief.state == "contradicted":
         why += contradicted_words(verdict.belief)
     if verdict.n_stated_beyond:
-        why.append(f"The recording itself states an error beyond RNP at {verdict.n_stated_beyond} epochs.")
+        why.append(f"The recording itself states an error beyond RNP at {epochs(verdict.n_stated_beyond)}.")
     if verdict.n_stated_alert:
-        why.append(f"The recording itself states an alert at {verdict.n_stated_alert} epochs.")
+        which = f" ({'; '.join(verdict.stated_alerts)})" if verdict.stated_alerts else ""
+        why.append(f"The recording itself states an alert at {epochs(verdict.n_stated_alert)}{which}.")
     if verdict.n_stated_worse:
         why.append(
-            f"The recording itself states an accuracy (95 % radius: EPU, NACp, NUCp, sigma) at {verdict.n_stated_worse} epochs that is "
+            f"The recording itself states an accuracy (95 % radius: EPU, NACp, NUCp, sigma) at {epochs(verdict.n_stated_worse)} that is "
             f"worse than the covariance allows.{_read_as_metres(verdict.unread)}"
         )
     if verdict.n_stated_uncontained:
         why.append(
             f"The recording itself states a containment radius (Rc, NIC, NUCp, a protection level) beyond twice RNP, or none, at "
-            f"{verdict.n_stated_uncontained} epochs.{_levels_read_as_metres(verdict.unread)}"
+            f"{epochs(verdict.n_stated_uncontained)}.{_levels_read_as_metres(verdict.unread)}"
         )
     if verdict.n_apart and verdict.largest_apart_m is not None:
         why.append(
@@ -213,8 +215,8 @@ def beside_words(n_epochs: int, unread: Sequence[str]) -> list[str]:
     if not n_epochs:
         return []
     return [
-        f"Not shown: the file itself states an accuracy or an error (EPU, sigma) above its horizontal protection level at {n_epochs} "
-        f"{'epoch' if n_epochs == 1 else 'epochs'}."
+        f"Not shown: the file itself states an accuracy or an error (EPU, sigma) above its horizontal protection level at "
+        f"{epochs(n_epochs)}."
         f"{_read_as_metres(unread)}"
     ]
 
