@@ -221,4 +221,6 @@ def test_a_landing_that_is_no_approach_is_named_with_the_rule_that_it_fails(tmp_
     (words,) = [a for a in sparse.assumptions if "not judged as approaches" in a]
     assert f"{aircraft} to {runway_name} (fewer than 4 points: 2 points" in words
     (words,) = [a for a in sparse.assumptions if "tracks have no approach" in a]
-    assert re.match(r"\d+ of \d+ tracks have no approach to these runways and are not judged: ", words)
+    named = re.match(r"(\d+) of \d+ tracks have no approach to these runways and are not judged: ", words)
+    assert named
+    assert sparse.n_tracks_elsewhere == int(named[1]) > 0

@@ -54,6 +54,59 @@ def test_an_accuracy_or_a_level_under_a_name_of_tables_is_heard(tmp_path: Path, 
     assert (set(epochs["status"]), set(epochs["alert"]), unread) == ({"invalid_input"}, {"unavailable"}, {})
 
 
+AGAINST: list[dict[str, object]] = [
+    {"nav": {"status": "DR"}},
+    {"gps": {"valid": False}},
+    {"properties": {"position": {"trusted": False}}},
+    {"sensors": [{"valid": True}, {"valid": False}]},
+    {"flags": ["healthy", "spoofed"]},
+    {"flags": "OK|SPOOFED"},
+    {"note": "GNSS JAMMED"},
+    {"alerts": ["UNABLE RNP"]},
+    {"numSV": 2},
+    {"sil": 0},
+    {"trust": 0},
+    {"navSource": "IRS"},
+    {"is_suspicious": 1},
+    {"position_latency_ms": 35000},
+]
+NOT_AGAINST: list[dict[str, object]] = [
+    {"alerts": []},
+    {"numSV": 9},
+    {"numSV": None},
+    {"sil": 3},
+    {"confidence": 0.95},
+    {"navSource": "GPS"},
+    {"position_latency_ms": 300},
+    {"flags": ["healthy"]},
+    {"wind": {"speed": 10, "from": 200}},
+    {"sensors": [{"valid": True}]},
+]
+
+
+@pytest.mark.parametrize("more", AGAINST, ids=str)
+def test_a_statement_in_a_list_an_object_or_a_text_is_heard(tmp_path: Path, more: dict[str, object]) -> None:
+    epochs, _ = lived(tmp_path / "out", **more)
+    assert (set(epochs["status"]), set(epochs["alert"])) == ({"invalid_input"}, {"unavailable"})
+
+
+@pytest.mark.parametrize("more", NOT_AGAINST, ids=str)
+def test_what_says_nothing_against_a_position_leaves_it(tmp_path: Path, more: dict[str, object]) -> None:
+    epochs, _ = lived(tmp_path / "out", **more)
+    assert set(epochs["status"]) == {"ok"}
+
+
+@pytest.mark.parametrize("odd", ["1e999", "9" * 400, '"\\ud800"', "[" * 200 + "]" * 200])
+@pytest.mark.parametrize("place", ["before", "behind"])
+def test_a_line_that_cannot_be_read_to_its_end_is_not_believed(tmp_path: Path, odd: str, place: str) -> None:
+    """It says that it is invalid, before or behind what cannot be read."""
+    keys, more = (b'"valid":false,"n":%s', b'"n":%s,"valid":false')[place == "behind"], odd.encode()
+    session = live.Session(tmp_path / "out", Settings(format="json", rnp_m=555.6))
+    session.take(chunk([line.replace(b"{", b"{" + keys % more + b",", 1) for line in lines(20)]))
+    session.finish()
+    assert set(tables.epochs(tmp_path / "out")["status"]) == {"invalid_input"}
+
+
 @pytest.mark.parametrize(
     "key", ["epv", "vAcc", "acc", "error", "std", "rms", "vel_acc", "range_std", "heading_accuracy", "integrity_level"]
 )

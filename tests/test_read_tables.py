@@ -192,6 +192,29 @@ def test_an_outage_written_as_nan_is_a_row_without_levels_and_no_damage(tmp_path
     assert reading.rejected == []
 
 
+def test_rows_that_cannot_be_taken_apart_were_recorded_all_the_same(tmp_path: Path) -> None:
+    cut = table(*(row.rsplit(",", 2)[0] if k in {11, 22} else row for k, row in enumerate(ROWS)))
+    reading = read(write(tmp_path, cut))
+    assert (reading.epochs.height, reading.left_out.height) == (28, 2)
+    assert reading.left_out["time_ns"].null_count() == 2
+
+
+@pytest.mark.parametrize(("begin", "line"), [(0, 1), (20, 21)])
+def test_lines_that_end_in_cr_alone_are_refused(tmp_path: Path, begin: int, line: int) -> None:
+    lines = table(*ROWS).splitlines()
+    with pytest.raises(FormatError, match=rf":{line}.*CR alone"):
+        read(write(tmp_path, "".join(f"{each}\n" for each in lines[:begin]) + "\r".join(lines[begin:])))
+    assert read(write(tmp_path, "\r\n".join(lines))).epochs.height == 30
+
+
+@pytest.mark.parametrize("digits", [400, 5000])
+def test_an_integer_of_any_length_is_a_number(tmp_path: Path, digits: int) -> None:
+    rows = [{"time": 1_633_608_773 + k, "lat": 48.9 + 0.001 * k, "lon": 2.5} for k in range(30)]
+    texts = [json.dumps(row) for row in rows]
+    texts[10] = texts[10].replace("}", ', "n": ' + "9" * digits + "}")
+    assert read(write(tmp_path, "\n".join(texts), "track.jsonl")).epochs.height == 30
+
+
 def test_a_row_with_three_bad_values_is_one_malformed_row(tmp_path: Path) -> None:
     bad = [f"4ca63a,{1633608773000 + 1000 * i},48.9,2.5,high,fast,85.0,down" for i in range(3)]
     reading = read(write(tmp_path, table(*bad, *ROWS[3:])))

@@ -666,6 +666,8 @@ export interface Verdict {
     n_approaches: number;
     /** Passes along a runway's centreline that stray, or end, before they are an approach; none of their epochs is judged. */
     n_unjudged_approaches: number;
+    /** Tracks of the recording without an approach to the runways; none of their epochs is judged. */
+    n_tracks_elsewhere: number;
     /** What a procedure does not judge of the recording; None where none was followed. */
     beside: BesideProcedure | null;
     /** Where no vertical bound judges: the largest known error of the heights with status ok; None where one does, or none is known. [m] */

@@ -121,6 +121,8 @@ class Landings:
         As of :class:`Approaches`.
     n_unjudged : int
         Passes along a centreline that are no approach, and that no approach of their track covers.
+    n_elsewhere : int
+        Tracks without an approach.
     due : dict
         Name of the approach to when it would have passed ``before_min_m`` at its own mean speed (GPS ns).
     """
@@ -131,6 +133,7 @@ class Landings:
     tracks: dict[str, str]
     notes: list[str]
     n_unjudged: int = 0
+    n_elsewhere: int = 0
     due: dict[str, int] = field(default_factory=dict)
 
     def between(self, epochs: pl.DataFrame) -> pl.DataFrame:
@@ -160,8 +163,11 @@ def seek(epochs: Table, runways: Sequence[Runway] | None = None, gates: Gates | 
     approaches = _with_ends(named, points.filter(~pl.col("gated")), gates)
     used = [r for r in runways if r.name in set(approaches["runway_name"])]
     tracks = dict(approaches.select("approach", "track").iter_rows())
-    notes += _elsewhere_words(epochs, set(tracks.values()))
-    return Landings(approaches, _statistics(segments), used, tracks, notes, lost.height, _due(named, gates))
+    every = {track: None for piece in pieces(epochs, ["track"]) for track in piece["track"].unique(maintain_order=True)}
+    landed = set(tracks.values())
+    elsewhere = [str(track) for track in every if track not in landed]
+    notes += _elsewhere_words(elsewhere, len(every))
+    return Landings(approaches, _statistics(segments), used, tracks, notes, lost.height, len(elsewhere), _due(named, gates))
 
 
 _POINTS = ("est_lat_rad", "est_lon_rad", "altitude_m", "est_h_m", "ground_track_rad", "vertical_rate_mps")
@@ -337,15 +343,13 @@ def _lost_words(lost: pl.DataFrame, names: list[str]) -> list[str]:
     return [f"{lost.height} passes along a runway's centreline are not judged as approaches: {'; '.join(shown)}{more}."]
 
 
-def _elsewhere_words(epochs: Table, landed: set[str]) -> list[str]:
+def _elsewhere_words(elsewhere: list[str], n_tracks: int) -> list[str]:
     """Tracks that are not judged at all: a departure, or one that left the centreline before an approach could be seen."""
-    every = {track: None for piece in pieces(epochs, ["track"]) for track in piece["track"].unique(maintain_order=True)}
-    elsewhere = [str(track) for track in every if track not in landed]
     if not elsewhere:
         return []
     more = f" and {len(elsewhere) - _PASSES_NAMED} more" if len(elsewhere) > _PASSES_NAMED else ""
     return [
-        f"{len(elsewhere)} of {len(every)} tracks have no approach to these runways and are not judged: "
+        f"{len(elsewhere)} of {n_tracks} tracks have no approach to these runways and are not judged: "
         f"{', '.join(elsewhere[:_PASSES_NAMED])}{more}. Where they flew is no part of the verdict."
     ]
 

@@ -76,6 +76,8 @@ class Material:
         ``track`` and ``time_ns`` of recorded rows that cannot be judged and are no epochs: they are expected all the same.
     n_approaches, n_unjudged_approaches : int
         Approaches to runways, and passes along a runway's centreline that are none and are not judged.
+    n_tracks_elsewhere : int
+        Tracks without an approach to these runways.
     beside : BesideProcedure, optional
         What a procedure does not judge of the recording.
     frames : Frames, optional
@@ -120,6 +122,7 @@ class Material:
     left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
     n_approaches: int = 0
     n_unjudged_approaches: int = 0
+    n_tracks_elsewhere: int = 0
     beside: BesideProcedure | None = None
     frames: Frames | None = None
     with_levels: frozenset[str] = frozenset()

@@ -131,6 +131,8 @@ class Verdict(Record):
     """Approaches to runways that were judged."""
     n_unjudged_approaches: int = 0
     """Passes along a runway's centreline that stray, or end, before they are an approach; none of their epochs is judged."""
+    n_tracks_elsewhere: int = 0
+    """Tracks of the recording without an approach to the runways; none of their epochs is judged."""
     beside: BesideProcedure | None = None
     """What a procedure does not judge of the recording; None where none was followed."""
     largest_height_error_m: float | None = None

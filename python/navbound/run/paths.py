@@ -44,6 +44,7 @@ class OnPath:
     due: dict[str, int] = field(default_factory=dict)
     n_approaches: int = 0
     n_unjudged: int = 0
+    n_elsewhere: int = 0
     beside: BesideProcedure | None = None
     left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
     operation: Operation = "en-route"
@@ -143,6 +144,7 @@ def _approach_path(epochs: Table, approaches: Landings, gates: Gates, n_recorded
         due=approaches.due,
         n_approaches=n,
         n_unjudged=approaches.n_unjudged,
+        n_elsewhere=approaches.n_elsewhere,
         operation="approach",
     )
 

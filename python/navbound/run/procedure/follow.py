@@ -60,6 +60,7 @@ class OnProcedure:
     due: dict[str, int] = field(default_factory=dict)
     n_approaches: int = 0
     n_unjudged: int = 0
+    n_elsewhere: int = 0
     operation: Operation = "approach"
     beside: BesideProcedure | None = None
 

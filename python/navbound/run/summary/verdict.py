@@ -120,6 +120,7 @@ def verdict_of(
         n_reason=known.n_reason,
         n_approaches=facts.n_approaches,
         n_unjudged_approaches=facts.n_unjudged_approaches,
+        n_tracks_elsewhere=material.n_tracks_elsewhere,
         beside=material.beside,
         n_outside=facts.n_outside,
         n_known_beyond=facts.n_known_beyond,

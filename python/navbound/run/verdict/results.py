@@ -166,7 +166,10 @@ def _unjudged_approaches(verdict: Verdict) -> str:
         if n == 1
         else "are not judged, since they stray or end before they are one"
     )
-    return f"; {n} of {n_all} approaches {which}" if n else ""
+    n_elsewhere = verdict.n_tracks_elsewhere
+    without = "track has" if n_elsewhere == 1 else "tracks have"
+    elsewhere = f"; {n_elsewhere} {without} no approach to these runways and {'is' if n_elsewhere == 1 else 'are'} not judged"
+    return (f"; {n} of {n_all} approaches {which}" if n else "") + (elsewhere if n_elsewhere else "")
 
 
 def _not_shown(verdict: Verdict) -> list[str]:
