@@ -73,6 +73,50 @@ def test_pieces_of_any_length_give_the_same_words(tmp_path: Path, rows: int) -> 
     assert speeds.doubts() == speeds_of(epochs).doubts() != []
 
 
+def behind(path: Path, moved_mps: float, *, stands_each: int = 0, turning: bool = False, left_out: bool = False) -> Path:
+    """A flight of an hour at 200 m/s, to the north or in turns of a minute to the north and the south; a second is held now and then."""
+    rows, (lat, lon) = ["time,lat_deg,lon_deg,sigma_e_m,sigma_n_m,speed_mps"], (40.0, 2.5)
+    for k in range(3600):
+        holds = stands_each > 0 and k % stands_each == stands_each - 1
+        course = math.radians(3.0 * (k % 120)) if turning else 0.0
+        if not holds:
+            lat += moved_mps * math.cos(course) / M_PER_DEG
+            lon += moved_mps * math.sin(course) / (M_PER_DEG * math.cos(math.radians(lat)))
+        if not (holds and left_out):
+            rows.append(f"2026-11-22T{12 + k // 3600:02d}:{k // 60 % 60:02d}:{k % 60:02d}Z,{lat:.8f},{lon:.8f},10,10,200")
+    path.write_text("\n".join(rows) + "\n")
+    return path
+
+
+@pytest.mark.parametrize("left_out", [False, True])
+def test_holds_that_are_never_made_good_add_up(tmp_path: Path, left_out: bool) -> None:
+    """One second in 26 is 27.7 km in an hour, each time within what a position may be late."""
+    verdict = navbound.analyze(behind(tmp_path / "a.csv", 200.0, stands_each=26, left_out=left_out)).summary.verdict
+    assert verdict.id == "not_shown"
+    (doubt,) = verdict.position_doubts
+    lacks_m = float(doubt.partition("speeds by ")[2].partition(" m")[0])
+    # Steps over the ends of windows of a minute are none's.
+    assert lacks_m == pytest.approx(3600 / 26 * 200.0, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("moved_mps", "turning", "shown"), [(160.0, False, False), (194.0, False, False), (198.0, False, True), (199.5, True, True)]
+)
+def test_a_track_that_falls_behind_its_own_speed_shows_nothing(tmp_path: Path, moved_mps: float, turning: bool, shown: bool) -> None:
+    """144, 21.6, 7.2 and 1.8 km in an hour, of 720: shown are 5 km and a fiftieth of the way."""
+    verdict = navbound.analyze(behind(tmp_path / "a.csv", moved_mps, turning=turning)).summary.verdict
+    assert (verdict.id, not verdict.position_doubts) == (("inside", True) if shown else ("not_shown", False))
+
+
+@pytest.mark.parametrize("rows", [1, 61, 1000])
+def test_pieces_of_any_length_fall_behind_alike(tmp_path: Path, rows: int) -> None:
+    epochs = navbound.analyze(behind(tmp_path / "a.csv", 190.0)).epochs.head(2000)
+    speeds = Speeds()
+    for begin in range(0, epochs.height, rows):
+        speeds.see(epochs[begin : begin + rows])
+    assert speeds.doubts() == speeds_of(epochs).doubts() != []
+
+
 def late(path: Path, age_s: float, sigma_m: float) -> Path:
     """A flight northwards at 100 m/s, a row each ten seconds, whose positions are older than their rows by any time up to an age."""
     ages = np.random.default_rng(5).uniform(0.0, age_s, 200)

@@ -8,6 +8,7 @@ import numpy as np
 import polars as pl
 
 from navbound.read.checks.plausible import plausible_rows
+from navbound.read.motion.balance import Balance
 from navbound.read.motion.counts import Comparison
 from navbound.read.motion.directions import Directions
 from navbound.read.motion.scatter import Steps
@@ -27,6 +28,7 @@ class Speeds:
 
     def __init__(self) -> None:
         self._longer, self._shorter, self._directions = Comparison(), Comparison(), Directions()
+        self._balance = Balance()
         self._waiting: pl.DataFrame | None = None
         self._steps = Steps()
 
@@ -63,6 +65,7 @@ class Speeds:
         apart_m, way_m = np.hypot(*minutes.apart_en_m.T), minutes.way_m
         longer = apart_m > _LONGER * by_speed_m + minutes.margin_m
         shorter = way_m < _SHORTER * by_speed_m - OFFSET_M
+        self._balance.count(minutes, apart_m, way_m, by_speed_m)
         self._longer.count(minutes, longer, np.column_stack([apart_m, by_speed_m]))
         self._shorter.count(minutes, shorter, np.column_stack([way_m, by_speed_m]))
 
@@ -82,6 +85,8 @@ class Speeds:
                     f"The positions travel {word} than the recording's own speeds say {where} (at worst {test.worst[0]:.0f} m for "
                     f"{test.worst[1]:.0f} m): the positions are false, or they or the speeds are in another unit than they are read in"
                 )
+        if not doubts and (lacks := self._balance.words()) is not None:
+            doubts.append(lacks)
         aside = self._directions.after_all()
         if not doubts and (where := aside.of()) is not None:
             doubts.append(
