@@ -229,9 +229,25 @@ def test_another_place_of_the_vehicle_is_not_far_away(tmp_path: Path, name: str,
     to_unit = math.pi / 180.0 if name.endswith("_rad") else 1.0
     table = [row | {name: (row["lat_deg"] + off_deg) * to_unit} for row in rows()]
     verdict = analyzed(tmp_path, table).summary.verdict
-    assert any("two columns of places of one vehicle" in each for each in verdict.position_doubts) == doubted
+    assert any("are places of one vehicle" in each for each in verdict.position_doubts) == doubted
     assert verdict.id == ("not_shown" if doubted else "inside")
     assert navbound.analyze(tmp_path / "a.json", columns={"est_lat_rad": "lat_deg:deg"}).summary.verdict.id == "inside"
+
+
+@pytest.mark.parametrize("name", ["gps", "true"])
+def test_another_place_that_moves_along_a_meridian_is_no_origin(tmp_path: Path, name: str) -> None:
+    """Its longitude stays; a degree is 74 km."""
+    table = [row | {f"{name}_lat": row["lat_deg"], f"{name}_lon": row["lon_deg"] + 1.0} for row in rows()]
+    assert len({row["lon_deg"] for row in table}) == 1
+    verdict = analyzed(tmp_path, table).summary.verdict
+    assert any(f"“{name}_lon” are places of one vehicle" in each for each in verdict.position_doubts)
+    origin = [row | {f"{name}_lat": 45.0, f"{name}_lon": 3.0} for row in rows()]
+    assert analyzed(tmp_path, origin).summary.verdict.id == "inside"
+
+
+def test_a_second_latitude_of_the_same_name_that_is_nowhere_is_no_fix_of_another_receiver(tmp_path: Path) -> None:
+    verdict = analyzed(tmp_path, [row | {"latitude": 0.0} for row in rows()]).summary.verdict
+    assert any("two columns of one quantity" in each for each in verdict.position_doubts)
 
 
 @pytest.mark.parametrize(("name", "off_deg", "doubted"), [("irs_lat", 0.1, False), ("gps_lat", 0.1, True)])

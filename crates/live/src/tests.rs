@@ -749,6 +749,7 @@ fn a_statement_under_another_key_is_heard_and_every_other_key_is_counted() {
         "\"Valid\":0",
         "\"valid\":null",
         "\"valid\":[1,0]",
+        "\"valid\":[]",
         "\"epu_m\":5.0",
         "\"HPL\":10.0",
         "\"hdop\":31",
@@ -769,7 +770,6 @@ fn a_statement_under_another_key_is_heard_and_every_other_key_is_counted() {
     let fine = [
         "\"valid\":true",
         "\"valid\":1.0",
-        "\"valid\":[]",
         "\"hdop\":1.5",
         "\"hdop\":\"1.5\"",
         "\"comment\":\"x\"",

@@ -11,7 +11,8 @@ use navbound_core::monitor::rnp::{self, Chain};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Risk};
 use navbound_live::journal::{self, Next};
 use navbound_live::{
-    Assigned, CATEGORIES, Claims, Course, EpochOut, Format, Input, Lane, Output, Settings, Splitter, Statements, Table, TrackId, Zone,
+    Assigned, CATEGORIES, Claims, Course, EpochOut, Format, Input, Lane, Output, Settings, Splitter, StatementRow, Statements, Table,
+    TrackId, Zone,
 };
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
@@ -25,8 +26,6 @@ fn refused(e: OutOfDomain) -> PyErr {
 
 /// RNP \[m\] and corners \[rad\] of an area.
 type ZoneRow = (f64, Vec<(f64, f64)>);
-/// Names of keys, words that say nothing against the position, largest number that says nothing.
-type StatementRow = navbound_live::StatementRow;
 /// Name of a track, its path and its RNP \[m\].
 type TrackRow<'py> = (String, Option<PyRef<'py, Path>>, Option<f64>);
 

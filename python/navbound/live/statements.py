@@ -17,8 +17,6 @@ _JUDGED = frozenset({"sigma_e_m", "sigma_n_m", "epu_m", "rc_m", "nac_p", "nic", 
 """Quantities of tables that bound a position or speak for it. Under a name that is none of the contract their value is not understood."""
 _CONTRACT = ("sigma_m", "rnp_m")
 """Keys of the contract that no table has: written otherwise, they are none of it."""
-_CONTRACT_COUNTS = ("n_sv",)
-"""The same of numbers of satellites: a key of the contract."""
 _USABLE_MODES = frozenset({"coasting"})
 """Modes of navbound's own tables in which a position is usable; its status says how well."""
 
@@ -31,9 +29,8 @@ def for_core() -> tuple[Kinds, list[str]]:
     named = [*_CONTRACT, *POSITION_TIME_NAMES, *sorted(BARE_LENGTHS), *(name for q in judged for name in (q.name, *q.aliases))]
     lengths = {name.removesuffix("_m") for q in judged if q.si == "m" for name in (q.name, *q.aliases)} | BARE_LENGTHS
     kinds: Kinds = [([*named, *(f"{name}_{unit}" for name in sorted(lengths) for unit in UNITS["m"])], [], None, None)]
-    satellites = QUANTITY["n_sv"]
-    counts = [name for name in satellites.aliases if name not in _CONTRACT_COUNTS]
-    kinds.append((counts, ["null", "", "nan"], float(_core.DETERMINING_SATELLITES), None))
+    # Under its own name the contract has the number of satellites.
+    kinds.append((sorted(QUANTITY["n_sv"].aliases.keys() - {"n_sv"}), ["null", "", "nan"], float(_core.DETERMINING_SATELLITES), None))
     for kind in KINDS:
         spelled = kind.names | {f"{before}_{name}" for name in kind.names for before in BEFORE}
         several = [f"{name}s" for name in spelled] if kind.effect == "alert" else []

@@ -23,10 +23,10 @@ struct Kind {
 }
 
 impl Kind {
-    /// Whether a value, or any value of a list, speaks against the position.
+    /// Whether a value, or any value of a list, speaks against the position. A list of nothing raises no flag, and states nothing else.
     fn against(&self, value: &Value) -> bool {
         if let Value::Array(all) = value {
-            return all.iter().any(|each| self.against(each));
+            return if all.is_empty() { !self.is_flag() } else { all.iter().any(|each| self.against(each)) };
         }
         let number = value.as_f64().or_else(|| value.as_str().and_then(|text| text.trim().parse().ok()));
         let [least, most] = self.within;

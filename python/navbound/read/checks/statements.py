@@ -129,7 +129,7 @@ AGE = _age(
 )
 """The age of a position, in seconds; it dates the position, too. One that is of the future is of another clock."""
 
-AGE_MS = _age(frozenset(f"{name}_{unit}" for name in _AGES for unit in _MILLISECONDS), 1e3)
+AGE_MS = _age(frozenset(f"{name}_{unit}" for name in (*_AGES, "age") for unit in _MILLISECONDS), 1e3)
 """The same in milliseconds."""
 
 AGES = ((AGE, 1.0), (AGE_MS, 1e-3))
@@ -420,9 +420,9 @@ _NO_VEHICLE = _NO_TRUTH | _words(
     "beacon antenna cpr centre center cell grid tile offset scale speed vel velocity rate err error sigma std var acc accuracy axis "
     "pred predicted forecast intruder traffic lead leader min max mean avg average median"
 )
-_INERTIAL = _words("irs ins iru ir adiru adirs inertial dr dead reckoning deadreckoning")
-"""Parts of names of a place that only inertial sensors keep."""
 """Parts of names of a latitude or a longitude, and of one that is none of the vehicle now. Provenance: ours."""
+_INERTIAL = _words("irs ins iru ir adiru adirs inertial dr dead reckoning deadreckoning")
+"""Parts of names of a place that only inertial sensors keep. Provenance: ours."""
 
 
 def _speaks_of_place(name: str) -> bool:
@@ -431,12 +431,23 @@ def _speaks_of_place(name: str) -> bool:
     return not _LATITUDE.isdisjoint(parts) and parts.isdisjoint(_NO_VEHICLE)
 
 
-def other_place(name: str) -> tuple[Literal["est_lat_rad", "est_lon_rad"], bool] | None:
-    """Which coordinate of another place of the vehicle a column is by its name, and whether inertial sensors alone keep it; or none."""
+@dataclass(frozen=True)
+class Place:
+    """What a column is by its name: which coordinate, of which place, and whether inertial sensors alone keep that."""
+
+    axis: Literal["est_lat_rad", "est_lon_rad"]
+    whose: tuple[str, ...]
+    inertial: bool
+
+
+def other_place(name: str) -> Place | None:
+    """The coordinate of another place of the vehicle that a column is by its name; or none."""
     if not _speaks_of_place(name):
         return None
-    parts = {part.rstrip("0123456789") for part in _parts(name)}
-    return ("est_lat_rad" if parts & {"lat", "latitude"} else "est_lon_rad"), not _INERTIAL.isdisjoint(parts)
+    parts = _parts(name)
+    words = {part.rstrip("0123456789") for part in parts}
+    whose = tuple(re.sub("|".join(sorted(_LATITUDE, key=len, reverse=True)), "", part) for part in parts)
+    return Place("est_lat_rad" if words & {"lat", "latitude"} else "est_lon_rad", whose, not _INERTIAL.isdisjoint(words))
 
 
 def speaks_of_integrity(name: str) -> bool:

@@ -255,7 +255,7 @@ def _again(columns: Mapping[str, Column], times: Sequence[Column], declared: Con
 def _places(declared: Container[str], free: list[str]) -> list[Column]:
     """Columns of another place of the vehicle, in degrees unless their name says radians."""
     places = ((name, other_place(name)) for name in free)
-    axes = [(name, place[0]) for name, place in places if place is not None and place[0] not in declared]
+    axes = [(name, place.axis) for name, place in places if place is not None and place.axis not in declared]
     return [Column(axis, name, "rad" if _plain(name)[0].endswith("_rad") else "deg") for name, axis in axes]
 
 

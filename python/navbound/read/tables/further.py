@@ -20,7 +20,7 @@ from navbound.read.tables.times import TimeFacts, converted, understand
 from navbound.units import EARTH_RADIUS_M
 
 if TYPE_CHECKING:
-    from collections.abc import Container, Mapping
+    from collections.abc import Container, Iterable, Mapping
     from pathlib import Path
 
     from navbound.read.tables.columns import Assignment, Column
@@ -32,7 +32,7 @@ PLACES_APART_M = 1852.0
 INERTIAL_APART_M = 10 * 1852.0
 """The same where inertial sensors alone keep the place: what RNP 10 allows them. Provenance: ours. [m]"""
 _MOVED_M = 100.0
-"""A coordinate that changes by less is the origin of something, and no place of a vehicle. Provenance: ours. [m]"""
+"""A place that moves by less while the vehicle moves is the origin of something. Provenance: ours. [m]"""
 SPEEDS_APART_MPS, SPEEDS_APART = 10.0, 0.1
 """Two columns of one speed contradict each other beyond this and this share of the larger; filters do not. Provenance: ours. [m/s, 1]"""
 SPEEDS_SHARE = 0.2
@@ -63,12 +63,15 @@ class Further:
 
     def see(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
         """The next rows: those that are read, with the largest speed, and the file's."""
+        for quantity in (quantity for quantity in _SCALE_M if quantity in part.columns and self._mapping.places):
+            self._see_range(quantity, part[quantity])
         for column in (*self._mapping.again, *self._mapping.places):
             if column.quantity not in part.columns or no_field(frame.schema[column.name]):
                 continue
             other, _ = numbers(frame[column.name], column)
             if column.quantity in _SCALE_M:
-                self._see_place(column, part, other)
+                # Another receiver without a fix writes 0.
+                self._see_place(column, part, other.set(other == 0.0, None) if column in self._mapping.places else other)
             elif column.quantity in _INDICATORS:
                 part = part.with_columns(pl.min_horizontal(column.quantity, other).alias(column.quantity))
             else:
@@ -80,15 +83,32 @@ class Further:
         return part
 
     def _see_place(self, column: Column, part: pl.DataFrame, other: pl.Series) -> None:
-        # A receiver without a fix writes 0.
-        other = other.set(other == 0.0, None)
         apart = pl.col(column.quantity) - other
         apart -= 2.0 * math.pi * (apart / (2.0 * math.pi)).round()
         apart_m = part.select(apart_m=apart.abs() * _SCALE_M[column.quantity])["apart_m"]
         self._apart_m[column.name] = max(self._apart_m.get(column.name, 0.0), largest(apart_m))
-        least, most = self._range_rad.get(column.name, (math.inf, -math.inf))
-        bounds = pl.select(least=pl.min_horizontal(pl.lit(least), other.min()), most=pl.max_horizontal(pl.lit(most), other.max()))
-        self._range_rad[column.name] = bounds.row(0)
+        self._see_range(column.name, other)
+
+    def _see_range(self, name: str, values: pl.Series) -> None:
+        least, most = self._range_rad.get(name, (math.inf, -math.inf))
+        bounds = pl.select(least=pl.min_horizontal(pl.lit(least), values.min()), most=pl.max_horizontal(pl.lit(most), values.max()))
+        self._range_rad[name] = bounds.row(0)
+
+    def _moved(self, names: Iterable[str]) -> bool:
+        """Whether any of some coordinates changes."""
+        ranges = [self._range_rad.get(name, (0.0, 0.0)) for name in names]
+        return any((most - least) * EARTH_RADIUS_M > _MOVED_M for least, most in ranges)
+
+    def _contradicting_places(self) -> list[str]:
+        """Other places of the vehicle that are far away; one that stays while the vehicle moves is the origin of something."""
+        places = [(column, place) for column in self._mapping.places if (place := other_place(column.name)) is not None]
+        moves, words = self._moved(_SCALE_M), list[str]()
+        for column, place in places:
+            apart_m, used = self._apart_m.get(column.name, 0.0), self._mapping.columns.get(column.quantity)
+            is_origin = moves and not self._moved(other.name for other, of in places if of.whose == place.whose)
+            if used is not None and not is_origin and apart_m > (INERTIAL_APART_M if place.inertial else PLACES_APART_M):
+                words.append(self._doubt("places of one vehicle", (used.name, column.name), f"{apart_m:.0f} m", column.quantity))
+        return words
 
     def _see_speeds(self, name: str, one: pl.Series, other: pl.Series) -> None:
         apart = (one - other).abs()
@@ -102,21 +122,15 @@ class Further:
         for column in self._mapping.again:
             apart_m, used = self._apart_m.get(column.name, 0.0), self._mapping.columns.get(column.quantity)
             if used is not None and apart_m > APART_M:
-                words.append(self._doubt("one quantity", (used.name, column.name), f"{apart_m:.0f} m", column.quantity))
-        for column in self._mapping.places:
-            apart_m, used = self._apart_m.get(column.name, 0.0), self._mapping.columns.get(column.quantity)
-            place = other_place(column.name)
-            least, most = self._range_rad.get(column.name, (0.0, 0.0))
-            moved = (most - least) * EARTH_RADIUS_M > _MOVED_M
-            if used is not None and place is not None and moved and apart_m > (INERTIAL_APART_M if place[1] else PLACES_APART_M):
-                words.append(self._doubt("places of one vehicle", (used.name, column.name), f"{apart_m:.0f} m", column.quantity))
+                words.append(self._doubt("two columns of one quantity", (used.name, column.name), f"{apart_m:.0f} m", column.quantity))
+        words += self._contradicting_places()
         used = self._mapping.columns.get("ground_speed_mps")
         for name, (n, n_far, most_mps) in self._speeds.items():
             if used is not None and n_far > SPEEDS_SHARE * n:
                 velocity = self._mapping.columns.get(name)
                 apart = f"at {n_far} of {n} rows up to {most_mps:.0f} m/s"
                 if velocity is None:
-                    words.append(self._doubt("one speed", (used.name, name), apart, "ground_speed_mps"))
+                    words.append(self._doubt("two columns of one speed", (used.name, name), apart, "ground_speed_mps"))
                 else:
                     words.append(
                         f"{self._path.name}: the speed “{used.name}” and that of the velocity “{velocity.name}” are {apart} apart; "
@@ -150,12 +164,12 @@ class Further:
         self._apart_s = largest((other_ns - time_ns).cast(pl.Float64) * 1e-9)
         if self._apart_s <= STALE_AFTER_S:
             return []
-        return [self._doubt("time", (self._mapping.times[0].name, self._time.name), f"{self._apart_s:.6g} s", "time")]
+        return [self._doubt("two columns of time", (self._mapping.times[0].name, self._time.name), f"{self._apart_s:.6g} s", "time")]
 
     def _doubt(self, of: str, names: tuple[str, str], apart: str, quantity: str) -> str:
         used, other = names
         return (
-            f"{self._path.name}: “{used}” and “{other}” are two columns of {of} and {apart} apart; "
+            f"{self._path.name}: “{used}” and “{other}” are {of} and {apart} apart; "
             f"{declare(f'{quantity}={used}')}, or the other; nothing is shown until it is stated"
         )
 

@@ -49,10 +49,8 @@ def solved(files: Files, solving: Solving | None = None) -> list[Reading]:
     return readings
 
 
-OWN_APART_M = PLACES_APART_M
-"""The receiver's own position, of the same signals, contradicts the solved one beyond it. Provenance: ours. [m]"""
 OWN_APART_SHARE = 0.01
-"""Share of epochs up to which it may: the first ones after a cold start. Provenance: ours. [1]"""
+"""Share of epochs up to which the receiver may have been elsewhere: the first ones after a cold start. Provenance: ours. [1]"""
 
 
 def _own(source: Source) -> pl.DataFrame | None:
@@ -74,11 +72,11 @@ def _against_own(path: Path, known: pl.DataFrame, own: pl.DataFrame) -> list[str
     both = nearest.join_asof(of_own, on="time_ns", strategy="nearest", tolerance=_SAME_NS).drop_nulls()
     apart = east_north_m(both.select("est_lat_rad", "est_lon_rad").to_numpy(), both.select("own_lat", "own_lon").to_numpy())
     apart_m = np.hypot(apart[:, 0], apart[:, 1])
-    n_far = int((apart_m > OWN_APART_M).sum())
+    n_far = int((apart_m > PLACES_APART_M).sum())
     if n_far <= OWN_APART_SHARE * both.height:
         return []
     return [
-        f"{path.name}: at {n_far} of {both.height} epochs the receiver's own position is more than {OWN_APART_M:.0f} m from the solved "
+        f"{path.name}: at {n_far} of {both.height} epochs the receiver's own position is more than {PLACES_APART_M:.0f} m from the solved "
         f"one, the furthest {apart_m.max():.0f} m: one of them is wrong, and a truth decides which"
     ]
 

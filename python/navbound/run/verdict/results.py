@@ -197,7 +197,7 @@ def _not_shown(verdict: Verdict) -> list[str]:
         )
     if verdict.n_stated_uncontained:
         why.append(
-            f"The recording itself states a containment radius (Rc, NIC, NUCp, a protection level) beyond twice RNP, or none, at "
+            f"The recording itself states a containment radius (Rc, NIC, NUCp, PIC, a protection level) beyond twice RNP, or none, at "
             f"{epochs(verdict.n_stated_uncontained)}.{_levels_read_as_metres(verdict.unread)}"
         )
     if verdict.n_apart and verdict.largest_apart_m is not None:
@@ -219,8 +219,7 @@ def beside_words(n_epochs: int, unread: Sequence[str]) -> list[str]:
         return []
     return [
         f"Not shown: the file itself states an accuracy or an error (EPU, sigma) above its horizontal protection level at "
-        f"{epochs(n_epochs)}."
-        f"{_read_as_metres(unread)}"
+        f"{epochs(n_epochs)}.{_read_as_metres(unread)}"
     ]
 
 
