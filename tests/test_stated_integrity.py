@@ -166,6 +166,7 @@ def test_a_row_that_is_not_valid_by_its_own_recording_is_not_judged(tmp_path: Pa
         ("info", "", "antenna disconnected"),
         ("note", "", "extrapolated"),
         ("note", "ended outage", "simulated data"),
+        ("log", "", "\x1b[31mWARNING\x1b[0m"),
     ],
 )
 def test_an_alert_under_any_of_its_names_is_one(tmp_path: Path, name: str, fine: object, bad: object) -> None:

@@ -520,7 +520,7 @@ _MISSING = ("", "nan", "null", "na", "n/a")
 
 def stated(kind: Kind, raw: pl.Series) -> Stated:
     """Read a column. An empty field states nothing."""
-    text = raw.cast(pl.String, strict=False).str.strip_chars().str.to_lowercase()
+    text = _printable(raw.cast(pl.String, strict=False)).str.strip_chars().str.to_lowercase()
     text = text.str.replace_all(r"[\s\-]+", "_").str.replace(r"^\+?(-?\d+)\.0*$", "$1").str.replace(r"^_(\d)", "-$1")
     value = text.cast(pl.Float64, strict=False)
     number = value.is_not_null() | text.is_in(["true", "false"])
@@ -581,10 +581,16 @@ def alarming(texts: pl.DataFrame) -> list[str]:
 
 def alarms(raw: pl.Series) -> Stated:
     """Read a column of free texts that nothing else reads: a message of a receiver or a crew. A text that takes an alarm back is named."""
+    raw = _printable(raw)
     against = _alarm(raw)
     words = pl.select(pl.when(against).then(raw.str.slice(0, _SHOWN_CHARACTERS))).to_series()
     taken_back = _plain_text(raw).str.contains(_ALARM).fill_null(value=False) & ~against
     return Stated(words, raw.filter(taken_back).unique(maintain_order=True).head(SHOWN).to_list())
+
+
+def _printable(raw: pl.Series) -> pl.Series:
+    """Without what colours a terminal or moves its cursor: a word stands alone there, and words of a file are printed."""
+    return raw.str.replace_all(r"\x1b\[[0-9;]*[A-Za-z]", " ").str.replace_all(r"[\x00-\x1f\x7f]", " ")
 
 
 def _plain_text(raw: pl.Series) -> pl.Series:
