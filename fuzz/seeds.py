@@ -165,6 +165,9 @@ def corpus() -> dict[str, list[bytes]]:
     found = {target: [text.encode() for text in several] for target, several in plain.items()}
     found["packed"] = [gzip.compress(text, mtime=0) for text in (found["sbas"][0], b"", bytes(5000))] + [b"\x1f\x9d", b"PK\x03\x04"]
     found["receivers"], found["positions"] = receivers(), positions()
+    # The two halves of a place, bare and in a frame.
+    halves = [bytes.fromhex(f"8d4b100058b5{rest}") for rest in ("00ac528d53a98812", "0420ea89b38a211c")]
+    found["squitters"] = [b"".join(halves), b"\x1a3" + bytes(7) + halves[0], b"*" + halves[0].hex().encode() + b";"]
     found["solutions"] = [bytes(range(256)), struct.pack("<q10d", 10**18, 0.5, 1.0, 100.0, 4.0, 1.0, 4.0, 0.5, 0.5, 9.0, 0.0)]
     found["repeated"] = repeated(found)
     found["smoothing"] = [struct.pack("<d" + "q3dB" * 3, 100.0, *(v for k in range(3) for v in (k * 10**9, 2e7 + k, 2e7, 2e7, 0)))]

@@ -3,6 +3,7 @@
 pub mod almanac;
 pub mod arinc424;
 pub mod measured;
+pub mod mode_s;
 mod order;
 pub mod packed;
 pub mod precise;

@@ -42,18 +42,28 @@ impl Bounds {
     }
 }
 
+/// The length of a category; `None` for one that has none.
+fn of(table: &[f64; CATEGORIES], category: Option<u8>) -> Option<f64> {
+    category.and_then(|category| table.get(usize::from(category)).copied()).filter(|length| length.is_finite())
+}
+
 impl Claims {
     /// The bounds of a claim.
     ///
     /// # Errors
     /// What is not claimed.
     pub(crate) fn bounds(&self, claim: Claim) -> Result<Bounds, Reason> {
-        let of = |table: &[f64; CATEGORIES], category: Option<u8>| {
-            category.and_then(|category| table.get(usize::from(category)).copied()).filter(|length| length.is_finite())
-        };
+        self.bounds_within(claim, of(&self.containment_m, claim.nic))
+    }
+
+    /// The bounds of a claim whose radius of containment is known more closely than by its category \[m\].
+    ///
+    /// # Errors
+    /// What is not claimed.
+    pub(crate) fn bounds_within(&self, claim: Claim, radius_m: Option<f64>) -> Result<Bounds, Reason> {
         let sigma_m = of(&self.sigma_m, claim.nac_p).ok_or(Reason::NoAccuracyCategory)?;
         let sure = claim.sil.is_some_and(|sil| (self.least_sil..=3).contains(&sil));
-        let containment_m = of(&self.containment_m, claim.nic).filter(|_| sure).ok_or(Reason::NoIntegrityClaim)?;
+        let containment_m = radius_m.filter(|_| sure).ok_or(Reason::NoIntegrityClaim)?;
         Ok(Bounds { sigma_m, containment_m })
     }
 }

@@ -29,11 +29,19 @@ pub enum Refused {
     TooOld,
     /// A new track beyond the most that are watched.
     FleetFull,
+    /// Half of a position, with which no other makes a position that is known to be true.
+    HalfAPosition,
+    /// A position that the one before contradicts.
+    Contradicted,
+    /// A position that a later one of its aircraft arrived with.
+    Superseded,
+    /// A position that others computed or repeat.
+    OfOthers,
 }
 
 impl Refused {
     /// All, in the order of their codes.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 15] = [
         Self::NotAPosition,
         Self::Version,
         Self::TrackName,
@@ -45,6 +53,10 @@ impl Refused {
         Self::FromTheFuture,
         Self::TooOld,
         Self::FleetFull,
+        Self::HalfAPosition,
+        Self::Contradicted,
+        Self::Superseded,
+        Self::OfOthers,
     ];
 
     /// Whether nothing of it could be read.
@@ -66,6 +78,10 @@ impl Refused {
             Self::FromTheFuture => "from_the_future",
             Self::TooOld => "too_old",
             Self::FleetFull => "fleet_full",
+            Self::HalfAPosition => "half_a_position",
+            Self::Contradicted => "contradicted",
+            Self::Superseded => "superseded",
+            Self::OfOthers => "of_others",
         }
     }
 }

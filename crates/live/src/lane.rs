@@ -78,7 +78,7 @@ impl Lane {
                 }
                 self.counters.n_bytes += bytes.len() as u64;
                 let mut decoded = Vec::new();
-                let n = self.decoder.push(bytes, &mut decoded);
+                let n = self.decoder.push(bytes, arrival, &mut decoded);
                 self.take(&decoded, arrival, n, out);
             }
             Input::Heartbeat { arrival } => {
@@ -98,7 +98,7 @@ impl Lane {
             }
             Input::End { arrival } => {
                 let mut decoded = Vec::new();
-                self.decoder.flush(&mut decoded);
+                self.decoder.flush(arrival, &mut decoded);
                 self.take(&decoded, arrival, 0, out);
                 self.release_until(GpsTime::from_nanoseconds(i64::MAX), false, arrival, out);
                 if let (None, Some(now)) = (arrival, self.event_time) {
@@ -113,7 +113,7 @@ impl Lane {
         let silent = self.last_chunk.is_some_and(|last| now.nanoseconds().saturating_sub(last.nanoseconds()) > IDLE_NS);
         if silent {
             let (mut decoded, arrival) = (Vec::new(), self.last_chunk.take());
-            self.decoder.flush(&mut decoded);
+            self.decoder.flush(arrival, &mut decoded);
             self.take(&decoded, arrival, 0, out);
         }
     }

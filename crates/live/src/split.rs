@@ -1,14 +1,14 @@
-//! Lines of many aircraft to lanes: the lane of a track is a hash of its name, so that a track has one lane for the life of a fleet.
+//! Lines and messages of many aircraft to lanes: the lane of a track is a hash of its name, so that a track has one lane for the life of a fleet.
 
 use crate::decode::{Format, track_of};
-use navbound_formats::stream::{Frame, Framer, Protocol};
+use navbound_formats::stream::{Frame, Framer, beast};
 
 /// FNV-1a of 64 bits (Fowler, Noll, Vo).
 fn hash(name: &str) -> u64 {
     name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
-/// Parts the lines of a source by lane. Between two pieces it keeps an unfinished line.
+/// Parts the lines or messages of a source by lane. Between two pieces it keeps an unfinished one.
 #[derive(Debug, Clone)]
 pub struct Splitter {
     format: Format,
@@ -17,26 +17,26 @@ pub struct Splitter {
 }
 
 impl Splitter {
-    /// Of lines of a format to a number of lanes.
+    /// Of a format to a number of lanes.
     pub fn new(format: Format, n_lanes: usize) -> Self {
-        Self { format, n_lanes: n_lanes.max(1), framer: Framer::new(Protocol::Lines) }
+        Self { format, n_lanes: n_lanes.max(1), framer: Framer::new(format.protocol()) }
     }
 
-    /// Whole lines of the next bytes, by lane. What names no track, and a line that is too long, goes to the first lane, which counts it.
+    /// Whole lines or frames of the next bytes, by lane. What names no track, and a line that is too long, goes to the first lane, which
+    /// counts it.
     pub fn push(&mut self, bytes: &[u8]) -> Vec<Vec<u8>> {
         let mut lanes = vec![Vec::new(); self.n_lanes];
         let (format, n_lanes) = (self.format, self.n_lanes as u64);
         self.framer.push(bytes, &mut |frame| {
-            let line: &[u8] = match &frame {
-                Ok(Frame::Line(line)) => line,
-                Ok(_) => return,
-                // A line that the lane cannot read stands for the one that was too long to pass on.
-                Err(_) => b"?",
-            };
-            let place = track_of(format, line).map_or(0, |track| (hash(track.name()) % n_lanes) as usize);
-            if let Some(lane) = lanes.get_mut(place) {
-                lane.extend_from_slice(line);
-                lane.push(b'\n');
+            let place = frame.ok().and_then(|frame| track_of(format, &frame)).map_or(0, |track| (hash(track.name()) % n_lanes) as usize);
+            let Some(lane) = lanes.get_mut(place) else { return };
+            match (frame, format) {
+                (Ok(Frame::Line(line)), _) => lane.extend(line.iter().chain(b"\n")),
+                (Ok(Frame::Beast(message)), _) => lane.extend(beast::frame(&message)),
+                // A frame that the lane cannot read either stands for the one that was damaged.
+                (Err(_), Format::Beast) => lane.extend(beast::DAMAGED),
+                (Err(_), _) => lane.extend(b"?\n"),
+                (Ok(_), _) => {}
             }
         });
         lanes

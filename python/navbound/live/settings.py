@@ -19,10 +19,14 @@ from navbound.read.receivers import MESSAGES
 if TYPE_CHECKING:
     from pathlib import Path as FilePath
 
-LINES = ("json", "readsb")
-"""Lines of many aircraft: ours, and ADS-B states as readsb writes them."""
-FORMATS = (*LINES, *MESSAGES)
-"""Lines of JSON, or the messages of a receiver."""
+LINES = ("json", "readsb", "avr")
+"""Lines of text: ours, ADS-B states as readsb writes them, and messages of Mode S in hexadecimal digits."""
+UNDATED = ("beast", "avr")
+"""Messages of Mode S: their time is that of their arrival."""
+FLEET = ("json", "readsb", *UNDATED)
+"""What names its aircraft, many of them."""
+FORMATS = (*FLEET, *MESSAGES)
+"""What a source may send: of many aircraft, or the messages of a receiver."""
 METHODS = ("tse-exact", "anp-circle")
 COMPUTING_S = 0.2
 """Share of the way to the crew: from the arrival of bytes to the alert. Provenance: inferred. [s]"""
@@ -34,7 +38,7 @@ class Settings:
 
     Attributes
     ----------
-    format : {"json", "ubx", "sbf", "novatel", "nmea"}
+    format : {"json", "readsb", "beast", "avr", "ubx", "sbf", "novatel", "nmea"}
         What the source sends.
     rnp_m : float
         RNP value in force where a record states none. [m]

@@ -286,10 +286,11 @@ class Udp:
         self._socket.close()
 
 
+HEARD = "-, tcp://host:port, udp://host:port or serial:///dev/ttyACM0?baud=115200"
 SOURCES = "a file, -, tcp://host:port, udp://host:port or serial:///dev/ttyACM0?baud=115200"
 
 
-def open_source(name: str, *, lines: bool = False, chunk: int = CHUNK) -> Source:
+def open_source(name: str, *, lines: bool = False, undated: bool = False, chunk: int = CHUNK) -> Source:
     """Open a source.
 
     Parameters
@@ -298,6 +299,8 @@ def open_source(name: str, *, lines: bool = False, chunk: int = CHUNK) -> Source
         A file, a run directory, ``-`` for standard input, ``tcp://host:port``, ``udp://host:port`` or ``serial:///dev/ttyACM0?baud=115200``.
     lines : bool
         Whether it sends lines of text.
+    undated : bool
+        Whether what it sends has no time but that of its arrival: nothing of a file does.
     chunk : int
         Bytes that are read of a file at once. [B]
 
@@ -311,6 +314,8 @@ def open_source(name: str, *, lines: bool = False, chunk: int = CHUNK) -> Source
     if name == "-":
         return StandardInput()
     if "://" not in name:
+        if undated:
+            raise InputError("source", name, domain=f"{HEARD}: these messages have no time but that of their arrival, which a file lacks")
         return Recording(Path(name), chunk) if Path(name).is_dir() else File(Path(name), chunk)
     try:
         parts = urlsplit(name)

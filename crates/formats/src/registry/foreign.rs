@@ -3,6 +3,8 @@
 //! Frames as their interface documents and public decoders describe them. Provenance: standard (from knowledge of the formats).
 
 use super::File;
+use crate::mode_s;
+use crate::stream::{Framer, Protocol};
 use navbound_core::signal::sbas::crc24q;
 
 const LOOK_AT: usize = 1 << 16;
@@ -12,6 +14,8 @@ const MOST_TRIES: usize = 64;
 const FRAMES: usize = 3;
 /// More than the longest frame \[B\].
 const LONGEST: usize = 1100;
+/// The longest frame of Beast, all its bytes doubled \[B\].
+const LONGEST_BEAST: usize = 44;
 
 pub(super) fn ulog(file: &File<'_>) -> bool {
     file.content.starts_with(b"ULog\x01\x12\x35")
@@ -113,6 +117,22 @@ fn stream(file: &File<'_>, sync: &[u8], frame: fn(&[u8]) -> Option<usize>) -> bo
         // A short file may hold fewer, and nothing else.
         n == FRAMES || n > 0 && rest.is_empty()
     })
+}
+
+/// Whether frames of Beast stand one behind the other; the first bytes may belong to one whose begin was missed.
+pub(super) fn beast(file: &File<'_>) -> bool {
+    let begin = file.content.get(..file.content.len().min(LONGEST)).unwrap_or_default();
+    let (mut framer, mut whole, mut damaged) = (Framer::new(Protocol::Beast), 0, 0);
+    framer.push(begin, &mut |frame| *if frame.is_ok() { &mut whole } else { &mut damaged } += 1);
+    let first = begin.get(..LONGEST_BEAST).unwrap_or(begin);
+    whole >= FRAMES && damaged <= 1 && memchr::memchr(0x1a, first).is_some()
+}
+
+/// Whether the first lines are messages of Mode S.
+pub(super) fn avr(file: &File<'_>) -> bool {
+    let lines = file.content.get(..file.content.len().min(LONGEST)).unwrap_or_default().split(|byte| *byte == b'\n');
+    let mut lines = lines.filter(|line| !line.trim_ascii().is_empty()).take(FRAMES).peekable();
+    lines.peek().is_some() && lines.all(|line| mode_s::of_line(line).is_some())
 }
 
 /// Bytes of a frame: D3, six zero bits, ten of length, the message, CRC-24Q.

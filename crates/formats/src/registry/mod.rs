@@ -135,6 +135,14 @@ pub const FORMATS: &[Format] = &[
     refused("igc", "flight log of a glider (IGC)", "A and a maker, and a line HFDTE", foreign::igc, MAKE_TABLE),
     refused("gpx", "GPX", "<gpx", foreign::gpx, MAKE_TABLE),
     refused("kml", "KML", "<kml", foreign::kml, MAKE_TABLE),
+    refused(
+        "beast",
+        "messages of Mode S in frames of Beast",
+        "three frames one behind the other: 1A, kind, counter, message, 1A twice within",
+        foreign::beast,
+        HEAR,
+    ),
+    refused("avr", "messages of Mode S in hexadecimal digits", "three lines one behind the other: * or @, digits, ;", foreign::avr, HEAR),
     refused("sirf", "log of a SiRF receiver", "three frames one behind the other: A0 A2, length, sum, B0 B3", foreign::sirf, CONVERT),
     refused("casic", "log in CASIC binary", "three frames one behind the other: BA CE, length, sum", foreign::casic, CONVERT),
     refused(
@@ -171,6 +179,8 @@ pub const FORMATS: &[Format] = &[
     read("csv", "text table", POSITIONS, "anything else", |_| true),
 ];
 
+/// Their messages have no date.
+const HEAR: &str = "let navbound live hear the receiver, or decode it to a table with the times of the messages";
 const CONVERT: &str = "convert it to NMEA or RINEX";
 
 /// The first of `formats` that recognises a file.

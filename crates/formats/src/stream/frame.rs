@@ -28,8 +28,28 @@ pub enum Frame<'a> {
     },
     /// NovAtel, ASCII: what is between `#` and `*`.
     NovatelText(&'a [u8]),
+    /// Message of a receiver of Mode S.
+    Beast(Beast),
     /// A line without its end.
     Line(&'a [u8]),
+}
+
+/// A message of Mode S as a receiver heard it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Beast {
+    /// The receiver's counter, which is no time.
+    pub counter: [u8; 6],
+    /// The message and zeros.
+    pub message: [u8; 14],
+    /// Bytes of the message.
+    pub length: usize,
+}
+
+impl Beast {
+    /// The message.
+    pub fn message(&self) -> &[u8] {
+        self.message.get(..self.length).unwrap_or_default()
+    }
 }
 
 /// Whose frames they are.
@@ -43,6 +63,8 @@ pub enum Family {
     Nmea,
     /// NovAtel.
     Novatel,
+    /// Receivers of Mode S.
+    Beast,
     /// Lines of text.
     Lines,
 }
@@ -55,6 +77,7 @@ impl Frame<'_> {
             Self::Sbf { .. } => Family::Sbf,
             Self::Nmea(_) => Family::Nmea,
             Self::NovatelBinary { .. } | Self::NovatelText(_) => Family::Novatel,
+            Self::Beast(_) => Family::Beast,
             Self::Line(_) => Family::Lines,
         }
     }

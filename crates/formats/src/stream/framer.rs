@@ -2,14 +2,16 @@
 
 use super::LONGEST_FRAME;
 use super::frame::{Damage, Frame};
-use super::lines;
 use super::search::{Among, Look, SYNC, look, next};
+use super::{beast, lines};
 
 /// What a stream consists of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Protocol {
     /// UBX, SBF, NovAtel and NMEA sentences, mixed, with anything between them.
     Receiver,
+    /// Messages of Mode S, as the receivers called Beast frame them.
+    Beast,
     /// Lines of text.
     Lines,
 }
@@ -67,6 +69,7 @@ impl Framer {
     fn take(&mut self, ended: bool, out: &mut impl FnMut(Result<Frame<'_>, Damage>)) {
         let used = match self.protocol {
             Protocol::Receiver => receiver(&self.kept, ended, out),
+            Protocol::Beast => beast::cut(&self.kept, ended, out),
             Protocol::Lines => lines::cut(&self.kept, &mut self.skipping, ended, out),
         };
         self.kept.drain(..used);

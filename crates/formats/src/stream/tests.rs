@@ -226,3 +226,47 @@ fn a_sentence_that_was_cut_does_not_swallow_the_next_one() {
         assert!(!seen.is_empty() && seen.iter().all(|each| !each.contains("Nmea(")), "{byte}: {seen:?}");
     }
 }
+
+/// Messages of three lengths, whose bytes are escapes now and then.
+fn beast_stream() -> Vec<u8> {
+    let mut bytes = vec![0x1a, 0x1a, 0x33, 7];
+    for k in 0..300_u32 {
+        let length = [2, 7, 14][k as usize % 3];
+        let mut message = [0; 14];
+        message[..length]
+            .iter_mut()
+            .enumerate()
+            .for_each(|(i, byte)| *byte = if (k as usize + i).is_multiple_of(5) { 0x1a } else { k as u8 });
+        bytes.extend(beast::frame(&Beast { counter: [0x1a, 0, 0, 1, k as u8, 0x1a], message, length }));
+        match k % 50 {
+            // An identity of a receiver, a frame that was cut, an unknown kind, and bytes of nothing.
+            10 => bytes.extend([0x1a, 0xe3, 1, 2, 3, 4, 5, 6, 7, 8]),
+            20 => bytes.extend([0x1a, b'3', 1, 2, 3]),
+            30 => bytes.extend(beast::DAMAGED),
+            40 => bytes.extend([1, 2, 3]),
+            _ => {}
+        }
+    }
+    bytes
+}
+
+#[test]
+fn chunks_of_beast_give_the_frames_of_the_whole() {
+    let bytes = beast_stream();
+    let whole = cut_by(Protocol::Beast, &bytes, || usize::MAX / 2);
+    let damaged = whole.iter().filter(|text| !text.starts_with("Beast")).count();
+    assert_eq!((whole.len(), damaged), (312, 12), "six frames that were cut, and six of no kind");
+    for seed in 0..20 {
+        assert_eq!(cut_by(Protocol::Beast, &bytes, pieces(seed)), whole, "cut by {seed}");
+    }
+    assert_eq!(cut_by(Protocol::Beast, &bytes, || 1), whole);
+    // A frame whose end never comes is damage, once.
+    assert_eq!(cut_by(Protocol::Beast, &[0x1a, b'3', 1, 2], || 1), ["the stream ends within a Beast frame"]);
+}
+
+proptest! {
+    #[test]
+    fn any_bytes_are_cut_the_same_however_they_arrive(bytes in proptest::collection::vec(prop_oneof![Just(0x1a_u8), Just(b'3'), any::<u8>()], 0..400), seed in 0_u64..1000) {
+        prop_assert_eq!(cut_by(Protocol::Beast, &bytes, pieces(seed)), cut_by(Protocol::Beast, &bytes, || usize::MAX / 2));
+    }
+}

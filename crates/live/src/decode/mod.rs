@@ -3,6 +3,7 @@
 mod json;
 mod readsb;
 mod receiver;
+mod squitters;
 mod statements;
 
 pub(crate) use statements::PassedOver;
@@ -12,8 +13,11 @@ use crate::claims::Claims;
 use crate::codec::{Damaged, Reader, Writer};
 use crate::counters::Refused;
 use crate::position::{Position, TrackId};
+use navbound_core::quantity::GpsTime;
+use navbound_formats::mode_s;
 use navbound_formats::receiver::position::{self, Ends, Kind};
 use navbound_formats::stream::{Damage, Frame, Framer, Protocol};
+use squitters::Sky;
 use std::sync::Arc;
 
 /// What a source sends.
@@ -23,6 +27,10 @@ pub enum Format {
     Json,
     /// ADS-B states as readsb writes them, one JSON object a position.
     Readsb,
+    /// Messages of Mode S, in frames of Beast.
+    Beast,
+    /// Messages of Mode S, in hexadecimal digits, one a line.
+    Avr,
     /// Messages of a receiver.
     Receiver(Kind),
 }
@@ -33,32 +41,40 @@ impl Format {
         match id {
             "json" => Some(Self::Json),
             "readsb" => Some(Self::Readsb),
+            "beast" => Some(Self::Beast),
+            "avr" => Some(Self::Avr),
             _ => Kind::of(id).map(Self::Receiver),
         }
     }
 
-    const fn protocol(self) -> Protocol {
+    pub(crate) const fn protocol(self) -> Protocol {
         match self {
-            Self::Json | Self::Readsb => Protocol::Lines,
+            Self::Json | Self::Readsb | Self::Avr => Protocol::Lines,
+            Self::Beast => Protocol::Beast,
             Self::Receiver(_) => Protocol::Receiver,
         }
     }
 
-    fn epochs(self) -> Option<position::Decoder> {
+    fn unfinished(self) -> Unfinished {
         match self {
-            Self::Json | Self::Readsb => None,
-            Self::Receiver(kind) => Some(position::Decoder::new(kind, Ends::WithLast)),
+            Self::Json | Self::Readsb => Unfinished::Nothing,
+            Self::Beast | Self::Avr => Unfinished::Sky(Sky::default()),
+            Self::Receiver(kind) => Unfinished::Epoch(position::Decoder::new(kind, Ends::WithLast)),
         }
     }
 }
 
-/// Whose a line is; `None` where it names no track, or the format has no lines.
-pub(crate) fn track_of(format: Format, line: &[u8]) -> Option<TrackId> {
-    let line = text(line);
-    match format {
-        Format::Json => json::track(line),
-        Format::Readsb => readsb::track(line),
-        Format::Receiver(_) => None,
+/// Whose a frame is; `None` where it names no track.
+pub(crate) fn track_of(format: Format, frame: &Frame<'_>) -> Option<TrackId> {
+    match (format, frame) {
+        (Format::Json, Frame::Line(line)) => json::track(text(line)),
+        (Format::Readsb, Frame::Line(line)) => readsb::track(text(line)),
+        (Format::Avr, Frame::Line(line)) => {
+            let (message, n) = mode_s::of_line(line)?;
+            squitters::track(&mode_s::squitter(message.get(..n)?).ok()??)
+        }
+        (Format::Beast, Frame::Beast(beast)) => squitters::track(&mode_s::squitter(beast.message()).ok()??),
+        _ => None,
     }
 }
 
@@ -70,6 +86,17 @@ fn text(line: &[u8]) -> &[u8] {
 /// A report, or why there is none.
 pub(crate) type Decoded = Result<Position, Refused>;
 
+/// What is kept between two frames.
+#[derive(Debug, Clone)]
+enum Unfinished {
+    /// Lines are epochs of their own.
+    Nothing,
+    /// The epoch that a receiver's messages build.
+    Epoch(position::Decoder),
+    /// What aircraft said of themselves in other messages.
+    Sky(Sky),
+}
+
 /// Decoder of one source. Between two pieces it keeps an unfinished frame and an unfinished epoch.
 #[derive(Debug, Clone)]
 pub(crate) struct Decoder {
@@ -77,8 +104,7 @@ pub(crate) struct Decoder {
     format: Format,
     /// What the categories of ADS-B stand for.
     claims: Claims,
-    /// The epoch that a receiver's messages build; lines are epochs of their own.
-    epochs: Option<position::Decoder>,
+    unfinished: Unfinished,
     /// Whose positions a receiver's are.
     track: TrackId,
     /// What a line says of its position under other keys than those of the contract.
@@ -89,28 +115,31 @@ pub(crate) struct Decoder {
 
 impl Decoder {
     pub(crate) fn new(format: Format, claims: Claims, track: TrackId, statements: Arc<Statements>) -> Self {
-        let framer = Framer::new(format.protocol());
-        Self { framer, format, claims, epochs: format.epochs(), track, statements, passed_over: PassedOver::default() }
+        let (framer, unfinished) = (Framer::new(format.protocol()), format.unfinished());
+        Self { framer, format, claims, unfinished, track, statements, passed_over: PassedOver::default() }
     }
 
-    /// The next bytes; how many frames or lines were whole.
-    pub(crate) fn push(&mut self, bytes: &[u8], out: &mut Vec<Decoded>) -> u64 {
-        let mut n_frames = 0;
-        let Self { framer, format, claims, epochs, track, statements, passed_over } = self;
-        let mut of = Of { lines: (*format, claims), epochs: epochs.as_mut(), track: *track, heard: (statements, passed_over) };
+    /// The next bytes, which arrived at `arrival`; how many frames or lines were whole.
+    pub(crate) fn push(&mut self, bytes: &[u8], arrival: Option<GpsTime>, out: &mut Vec<Decoded>) -> u64 {
+        let (mut n_frames, n_before) = (0, out.len());
+        let Self { framer, format, claims, unfinished, track, statements, passed_over } = self;
+        let mut of = Of { format: *format, claims, arrival, unfinished, track: *track, heard: (statements, passed_over) };
         framer.push(bytes, &mut |frame| n_frames += u64::from(of.take(&frame, out)));
+        if let (Unfinished::Sky(_), Some(new)) = (unfinished, out.get_mut(n_before..)) {
+            squitters::keep_the_last(new);
+        }
         n_frames
     }
 
     /// No bytes came for a while, or none will: what waits is all there is.
-    pub(crate) fn flush(&mut self, out: &mut Vec<Decoded>) {
-        let Self { framer, format, claims, epochs, track, statements, passed_over } = self;
+    pub(crate) fn flush(&mut self, arrival: Option<GpsTime>, out: &mut Vec<Decoded>) {
+        let Self { framer, format, claims, unfinished, track, statements, passed_over } = self;
         let track = *track;
-        let mut of = Of { lines: (*format, claims), epochs: epochs.as_mut(), track, heard: (statements, passed_over) };
+        let mut of = Of { format: *format, claims, arrival, unfinished, track, heard: (statements, passed_over) };
         framer.flush(&mut |frame| {
             of.take(&frame, out);
         });
-        if let Some(epochs) = epochs {
+        if let Unfinished::Epoch(epochs) = unfinished {
             let mut items = Vec::new();
             epochs.finish(&mut items);
             out.extend(items.into_iter().filter_map(|item| receiver::decoded(item, track)));
@@ -122,8 +151,10 @@ impl Decoder {
         to.bytes(rest);
         to.flag(skipping);
         self.passed_over.write(to);
-        if let Some(epochs) = &self.epochs {
-            receiver::write(epochs, to);
+        match &self.unfinished {
+            Unfinished::Nothing => {}
+            Unfinished::Epoch(epochs) => receiver::write(epochs, to),
+            Unfinished::Sky(sky) => sky.write(to),
         }
     }
 
@@ -137,18 +168,21 @@ impl Decoder {
         let (rest, skipping) = (from.bytes()?, from.flag()?);
         let framer = Framer::with_rest(format.protocol(), rest, skipping).map_err(|_| Damaged("more bytes wait than a frame has"))?;
         let passed_over = PassedOver::read(from)?;
-        let epochs = match format {
-            Format::Json | Format::Readsb => None,
-            Format::Receiver(kind) => Some(receiver::read(kind, from)?),
+        let unfinished = match format {
+            Format::Json | Format::Readsb => Unfinished::Nothing,
+            Format::Beast | Format::Avr => Unfinished::Sky(Sky::read(from)?),
+            Format::Receiver(kind) => Unfinished::Epoch(receiver::read(kind, from)?),
         };
-        Ok(Self { framer, format, claims, epochs, track, statements, passed_over })
+        Ok(Self { framer, format, claims, unfinished, track, statements, passed_over })
     }
 }
 
 /// What frames are taken by.
 struct Of<'a> {
-    lines: (Format, &'a Claims),
-    epochs: Option<&'a mut position::Decoder>,
+    format: Format,
+    claims: &'a Claims,
+    arrival: Option<GpsTime>,
+    unfinished: &'a mut Unfinished,
     track: TrackId,
     heard: (&'a Statements, &'a mut PassedOver),
 }
@@ -156,18 +190,29 @@ struct Of<'a> {
 impl Of<'_> {
     /// One frame; whether it was whole.
     fn take(&mut self, result: &Result<Frame<'_>, Damage>, out: &mut Vec<Decoded>) -> bool {
-        match (result, &mut self.epochs, self.lines) {
-            (Err(_), ..) => out.push(Err(Refused::DamagedFrame)),
-            (Ok(Frame::Line(line)), None, (Format::Readsb, claims)) => out.push(readsb::position(text(line), claims)),
-            (Ok(Frame::Line(line)), None, _) => out.push(json::position(text(line), self.heard.0, self.heard.1)),
-            (Ok(_), None, _) => {}
+        let Ok(frame) = result else {
+            out.push(Err(Refused::DamagedFrame));
+            return false;
+        };
+        match (frame, &mut *self.unfinished, self.format) {
+            (Frame::Line(line), Unfinished::Nothing, Format::Readsb) => out.push(readsb::position(text(line), self.claims)),
+            (Frame::Line(line), Unfinished::Nothing, _) => out.push(json::position(text(line), self.heard.0, self.heard.1)),
+            (Frame::Line(line), Unfinished::Sky(sky), _) => match mode_s::of_line(line) {
+                Some((message, n)) => out.extend(squitters::heard(sky, message.get(..n), self.arrival, self.claims)),
+                None => out.push(Err(Refused::NotAPosition)),
+            },
+            (Frame::Beast(beast), Unfinished::Sky(sky), _) if !squitters::computed(beast.counter) => {
+                out.extend(squitters::heard(sky, Some(beast.message()), self.arrival, self.claims));
+            }
+            (Frame::Beast(_), Unfinished::Sky(_), _) => out.push(Err(Refused::OfOthers)),
             // Frames of other protocols between them are passed over.
-            (Ok(frame), Some(epochs), _) => {
+            (frame, Unfinished::Epoch(epochs), _) => {
                 let mut items = Vec::new();
                 epochs.take(frame, 0, &mut items);
                 out.extend(items.into_iter().filter_map(|item| receiver::decoded(item, self.track)));
             }
+            _ => {}
         }
-        result.is_ok()
+        true
     }
 }

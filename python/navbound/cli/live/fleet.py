@@ -33,13 +33,14 @@ if TYPE_CHECKING:
     from navbound.live.source import Source
 
 FleetSource = Annotated[
-    str, typer.Argument(help="Lines of many aircraft: a file, - (standard input), tcp://host:port, udp://host:port, or simulated:N.")
+    str, typer.Argument(help="What many aircraft send: a file, - (standard input), tcp://host:port, udp://host:port, or simulated:N.")
 ]
 To = Annotated[str, typer.Option("--to", help="What carries the fleet: a folder, or nats://host:port/NAME.")]
 Fleet = Annotated[str, typer.Argument(help="What carries the fleet: a folder, or nats://host:port/NAME.")]
 Lanes = Annotated[int, typer.Option(help="Lanes that the aircraft are shared out to; fixed for the life of a fleet.")]
 LineForm = Annotated[
-    str | None, typer.Option("--format", help="json, or readsb: ADS-B states. [default: readsb for simulated:N, else json]")
+    str | None,
+    typer.Option("--format", help="json, readsb (ADS-B states), beast or avr (Mode S). [default: readsb for simulated:N, else json]"),
 ]
 RnpTable = Annotated[Path | None, typer.Option(help="File with RNP values by area and by track.")]
 Spool = Annotated[Path | None, typer.Option(help="Folder in which what was read waits for a broker. [default: out/spool/NAME]")]
@@ -156,12 +157,12 @@ def alerts(fleet: Fleet, follow: Annotated[bool, typer.Option("--follow", help="
 def _settings(source: str, form: str | None, *, spec: str, rnp_table: Path | None, **others: Any) -> Settings:
     from navbound import live  # noqa: PLC0415
     from navbound.live.fleet import pretend  # noqa: PLC0415
-    from navbound.live.settings import LINES  # noqa: PLC0415
+    from navbound.live.settings import FLEET  # noqa: PLC0415
     from navbound.rnp.requirement import requirement  # noqa: PLC0415
 
     known = form or ("readsb" if pretend.is_name(source) else "json")
-    if known not in LINES:
-        raise InputError("format", known, domain=f"one of {', '.join(LINES)}: lines that name their aircraft")
+    if known not in FLEET:
+        raise InputError("format", known, domain=f"one of {', '.join(FLEET)}: what names its aircraft")
     table = None if rnp_table is None else str(rnp_table)
     settings = live.Settings(format=known, rnp_m=requirement(spec).rnp_m, rnp_table=table, **others)
     settings.core()
@@ -176,11 +177,14 @@ def _record(source: str, settings: Settings, *, live_source: bool, speed: float 
     return {"navbound_version": __version__, "settings": asdict(settings), "origin": asdict(origin)}
 
 
-def _opened(source: str) -> Source:
+def _opened(source: str, form: str) -> Source:
     from navbound import live  # noqa: PLC0415
     from navbound.live.fleet import pretend  # noqa: PLC0415
+    from navbound.live.settings import LINES, UNDATED  # noqa: PLC0415
 
-    return pretend.Pretend(source) if pretend.is_name(source) else live.open_source(source, lines=True)
+    if pretend.is_name(source):
+        return pretend.Pretend(source)
+    return live.open_source(source, lines=form in LINES, undated=form in UNDATED)
 
 
 def _is_live(source: str) -> bool:
@@ -215,7 +219,7 @@ def _feed(source: str, settings: Settings, fed: _Fed, *, stop: Callable[[], bool
     if not 0 <= fed.speed < float("inf"):
         raise InputError("speed", fed.speed, "1", "[0, inf)")
     with ExitStack() as all_opened:
-        opened = all_opened.enter_context(closing(_opened(source)))
+        opened = all_opened.enter_context(closing(_opened(source, settings.format)))
         target = all_opened.enter_context(_Begun(source, settings, fed.to, fed.lanes))
         place = Path(fed.to) if "://" not in fed.to else fed.spool or Path("out/spool") / fed.to.rpartition("/")[2]
         spool = target if "://" not in fed.to else all_opened.enter_context(_Begun(source, settings, str(place), fed.lanes))

@@ -40,7 +40,9 @@ fleet.register(app)
 SessionOut = Annotated[Path, typer.Option("--out", help="Folder of the session: journal in and out, events, tables.")]
 Journal = Annotated[Path, typer.Argument(help="Folder of a session, or its journal in (in.nvj).")]
 Course = Annotated[str | None, typer.Option(help="Where the aircraft should be: a runway (LFPG/08R) or a route file.")]
-Form = Annotated[str | None, typer.Option("--format", help="json, ubx, sbf, novatel or nmea. [default: by a file's begin]")]
+Form = Annotated[
+    str | None, typer.Option("--format", help="json, readsb, beast, avr, ubx, sbf, novatel or nmea. [default: by a file's begin]")
+]
 Level = Annotated[str | None, typer.Option(help="Service level whose alert limits the display shows, such as LPV-200.")]
 Hook = Annotated[
     str | None, typer.Option("--webhook", help="Address that each transition is sent to: https://..., or http:// on this host.")
@@ -131,12 +133,13 @@ def _settings(source: str, form: str | None, *, spec: str, path: str | None, met
     """What a session of a source is set to, checked."""
     from navbound import live  # noqa: PLC0415
     from navbound.live.recording import has_path  # noqa: PLC0415
+    from navbound.live.settings import FORMATS  # noqa: PLC0415
     from navbound.live.source import format_of  # noqa: PLC0415
     from navbound.rnp.requirement import requirement  # noqa: PLC0415
 
     known = form or (None if "://" in source or source == "-" else format_of(source))
     if known is None and ("://" in source or source == "-"):
-        raise InputError("format", "none", domain="json, ubx, sbf, novatel or nmea with --format: a stream is not guessed")
+        raise InputError("format", "none", domain=f"{', '.join(FORMATS)} with --format: a stream is not guessed")
     selected = method or ("tse-exact" if has_path(Path(source)) else "")
     if Path(source).is_dir():
         # The motion of a finished run was judged with what it knew, a receiver that stands among it.
@@ -150,10 +153,12 @@ def _run(source: str, settings: Settings, ways: _Ways) -> None:
     """Judge a source until it ends or the command is stopped."""
     from navbound import live  # noqa: PLC0415
     from navbound.live.course import points  # noqa: PLC0415
+    from navbound.live.settings import LINES, UNDATED  # noqa: PLC0415
     from navbound.live.source import CHUNK  # noqa: PLC0415
 
     _check_speed(ways.speed)
-    opened = live.open_source(source, lines=settings.format == "json", chunk=512 if ways.speed else CHUNK)
+    lines, undated = settings.format in LINES, settings.format in UNDATED
+    opened = live.open_source(source, lines=lines, undated=undated, chunk=512 if ways.speed else CHUNK)
     stop = stop_requested()
     kind: Any = "live" if opened.live else "replay" if ways.replay else "recording"
     origin = live.Origin(kind, source, None if opened.live else ways.speed, points(settings, source), ways.limits)
