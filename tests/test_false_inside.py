@@ -19,6 +19,7 @@ from navbound.run.directory import Run
 from navbound.run.inputs import solved
 from navbound.run.inputs.solving import Solving
 from navbound.run.judge import judge
+from navbound.run.summary import usual
 from navbound.run.summary.missing import Gaps
 
 N = 600
@@ -538,3 +539,29 @@ def test_heights_that_no_vertical_bound_judges_are_named(tmp_path: Path) -> None
     beside = run(tmp_path, **with_truth()).summary.verdict
     assert beside.largest_height_error_m is None
     assert "no vertical bound" not in beside.words
+
+
+@pytest.mark.parametrize(
+    ("steps_ms", "period_s"),
+    [
+        # A receiver of 1 Hz that lost nearly half of its positions: the median is the step across a lost one.
+        ((1000, 2000, 2000, 1000, 3000), 1.0),
+        ((1000, 1000, 1000, 4000), 1.0),
+        # Transponders, a source that speaks now and then, and one in bursts have no step that others are whole numbers of.
+        ((400, 500, 600), 0.5),
+        ((1000, 10_000, 10_000, 10_000, 10_000), 10.0),
+        ((100, 1000, 1000), 1.0),
+        ((1000,), 1.0),
+        ((), 1.0),
+    ],
+)
+def test_the_period_is_the_usual_step(steps_ms: tuple[int, ...], period_s: float) -> None:
+    assert usual.period_s(np.tile(np.array(steps_ms, dtype=np.int64), 20) * 1_000_000) == period_s
+
+
+def test_gaps_of_a_receiver_that_lost_half_of_its_positions_are_missing_epochs(tmp_path: Path) -> None:
+    """Steps of 1, 2, 2 and 4 s: the monitor of a receiver of 1 Hz has nothing for 4 s."""
+    kept = np.isin(np.arange(N) % 9, (0, 1, 3, 5))
+    verdict = run(tmp_path, **{name: values[kept] for name, values in columns().items()}).summary.verdict
+    assert verdict.id == "not_shown"
+    assert verdict.n_missing == pytest.approx(3 * N / 9, abs=3)

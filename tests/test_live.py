@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import json
+import os
 import socket
 import subprocess
 import sys
@@ -436,8 +437,49 @@ def test_other_keys_are_passed_over_and_counted_by_name(tmp_path: Path) -> None:
     assert set(tables.epochs(tmp_path / "out")["status"]) == {"ok"}
 
 
+def test_a_key_that_may_speak_of_accuracy_is_named_however_many_others_there_are(tmp_path: Path) -> None:
+    """Twenty harmless keys hid it."""
+    log = good_lines(tmp_path / "log.jsonl", 30, **{f"k{k:02d}": 1 for k in range(30)}, z_error_m=9000.0)
+    words = " ".join(CliRunner().invoke(app, ["live", str(log), "--out", str(tmp_path / "out")]).output.split())
+    assert "30 k19 and 11 more; by their names these may speak of accuracy or integrity, and nothing is judged by them: z_error_m" in words
+
+
+def test_another_place_of_the_vehicle_is_not_believed(tmp_path: Path) -> None:
+    log = good_lines(tmp_path / "log.jsonl", 30, gps_lat_deg=10.0, gps_lon_deg=10.0)
+    done = CliRunner().invoke(app, ["live", str(log), "--out", str(tmp_path / "out")])
+    assert done.exit_code == 4
+    assert set(tables.epochs(tmp_path / "out")["status"]) == {"invalid_input"}
+
+
 def test_a_file_that_is_packed_is_refused_by_name(tmp_path: Path) -> None:
     packed = tmp_path / "log.jsonl.gz"
     packed.write_bytes(gzip.compress(good_lines(tmp_path / "log.jsonl", 5).read_bytes()))
     with pytest.raises(FormatError, match="packed"):
         File(packed)
+
+
+def test_a_pipe_with_a_name_is_a_source(tmp_path: Path) -> None:
+    """It could not be sought in, and the session ended as a bug of navbound."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    lines = [json.dumps({"v": 1, "track": "a", "time_ns": live.session.now_ns() + k, "fte_m": 1.0, "sigma_m": 5.0}) for k in range(3)]
+    thread = threading.Thread(target=lambda: pipe.write_text("\n".join(lines) + "\n"), daemon=True)
+    thread.start()
+    command = [sys.executable, "-m", "navbound", "live", str(pipe), "--format", "json", "--out", str(tmp_path / "o")]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "3 epochs of 1 tracks" in done.stdout
+    assert subprocess.run([*command[:4], str(pipe)], capture_output=True, text=True, timeout=120, check=False).returncode == 2
+
+
+def test_degraded_epochs_and_positions_that_nobody_used_are_in_the_last_line(tmp_path: Path) -> None:
+    def ended(name: str, **more: object) -> subprocess.CompletedProcess[str]:
+        log = tmp_path / f"{name}.jsonl"
+        log.write_text("".join(json.dumps({"v": 1, "track": "a", "time_ns": k * 10**9, "fte_m": 1.0} | more) + "\n" for k in range(5)))
+        command = [sys.executable, "-m", "navbound", "live", str(log), "--out", str(tmp_path / name)]
+        return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+
+    degraded = ended("degraded", sigma_m=5.0, n_sv=0)
+    assert (degraded.returncode, "; 5 epochs are degraded" in degraded.stdout) == (0, True)
+    unused = ended("unused")
+    assert (unused.returncode, "; no position was used" in unused.stdout) == (4, True)

@@ -159,3 +159,26 @@ def test_what_is_no_snapshot_is_refused_in_words(tmp_path: Path, content: object
 def test_columns_of_a_list_each_are_a_table_whatever_their_names(tmp_path: Path) -> None:
     columns = {"now": [NOW_S, NOW_S + 1], "lat": [48.0, 48.0009], "lon": [2.0, 2.0], "aircraft": ["D-AIPA", "D-AIPA"]}
     assert read(write(tmp_path, json.dumps(columns))).epochs.height == 2
+
+
+def test_an_aircraft_of_dump1090_without_a_type_is_of_the_usual_one(tmp_path: Path) -> None:
+    """dump1090 writes the type of an unusual source alone, and the speed in knots; one such aircraft took the others away."""
+    aircraft = [state(0, hex=f"3c64{k:02x}", speed=SPEED_MPS / KNOT_MPS) for k in range(6)]
+    for each in aircraft:
+        del each["gs"], each["type"]
+    path = tmp_path / "aircraft.json"
+    path.write_text(json.dumps({"now": NOW_S, "aircraft": [*aircraft, aircraft[0] | {"type": "adsb_icao_nt", "hex": "3c6500"}]}))
+    summary = navbound.analyze(path).summary
+    assert summary.n_status.get("ok", 0) == 7
+    assert any("in which the aircraft moved up to 62 m:" in each for each in summary.assumptions)
+    # readsb writes it always: without it nothing is claimed.
+    path.write_text(json.dumps({"now": NOW_S, "aircraft": [*aircraft, aircraft[0] | {"type": "adsb_icao", "hex": "3c6500"}]}))
+    assert navbound.analyze(path).summary.n_status.get("ok", 0) == 1
+
+
+def test_how_far_an_aircraft_without_a_speed_moved_is_not_known(tmp_path: Path) -> None:
+    states = [state(k) for k in range(20)]
+    for each in states:
+        del each["gs"]
+    words = " ".join(navbound.analyze(lines(tmp_path, states)).summary.assumptions)
+    assert "up to 0.25 s old, in which nobody knows how far the aircraft moved" in words

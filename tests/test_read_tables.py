@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import json
 import math
+import os
 from pathlib import Path
 
 import polars as pl
@@ -375,6 +376,13 @@ def test_a_unit_in_the_name_of_a_column_is_the_unit(tmp_path: Path, name: str, m
 def test_a_unit_that_is_not_known_is_no_other(tmp_path: Path, name: str) -> None:
     with pytest.raises(FormatError, match=r"its unit “.*” is not known \(known: m, metre"):
         read(of_columns(tmp_path, name))
+
+
+def test_a_pipe_is_refused_with_what_to_do(tmp_path: Path) -> None:
+    """Every file is looked at before it is read, and what was looked at is gone from a pipe: the reading waited for ever."""
+    os.mkfifo(tmp_path / "pipe.csv")
+    with pytest.raises(FormatError, match="a pipe, not a file; write what comes out of it to a file first"):
+        read(tmp_path / "pipe.csv")
 
 
 def test_a_device_is_no_file() -> None:

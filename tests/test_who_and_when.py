@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import polars as pl
 import pytest
@@ -13,6 +13,9 @@ import pytest
 import navbound
 from navbound import FormatError
 from navbound.run.directory import Run
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 N = 120
 SPEED_MPS = 250.0
@@ -232,6 +235,60 @@ def test_another_place_of_the_vehicle_is_not_far_away(tmp_path: Path, name: str,
     assert any("are places of one vehicle" in each for each in verdict.position_doubts) == doubted
     assert verdict.id == ("not_shown" if doubted else "inside")
     assert navbound.analyze(tmp_path / "a.json", columns={"est_lat_rad": "lat_deg:deg"}).summary.verdict.id == "inside"
+
+
+def _dms(degrees: float, letters: str) -> str:
+    minutes = abs(degrees) * 60.0
+    return f"{minutes // 60:.0f}°{minutes % 60 // 1:02.0f}'{minutes % 1 * 60:07.4f}\"{letters[degrees < 0]}"
+
+
+FORMS: dict[str, Callable[[float, float], dict[str, Any]]] = {
+    "integers of 1e-7 degrees": lambda lat, lon: {"gps_lat_e7": round(lat * 1e7), "gps_lon_e7": round(lon * 1e7)},
+    "semicircles": lambda lat, lon: {"gps_lat_semi": round(lat / 180 * 2**31), "gps_lon_semi": round(lon / 180 * 2**31)},
+    "a hemisphere behind": lambda lat, lon: {"gps_lat": f"{lat:.7f}N", "gps_lon": f"{lon:.7f}E"},
+    "a hemisphere before": lambda lat, lon: {"gps_lat": f"N {lat:.7f}", "gps_lon": f"E {lon:.7f}"},
+    "degrees, minutes, seconds": lambda lat, lon: {"gps_lat_dms": _dms(lat, "NS"), "gps_lon_dms": _dms(lon, "EW")},
+    "two numbers in a field": lambda lat, lon: {"gps_position": f"{lat:.7f}, {lon:.7f}"},
+    "a list of two": lambda lat, lon: {"gps_pos": [lat, lon]},
+    "longitude first": lambda lat, lon: {"geom": f"POINT({lon:.7f} {lat:.7f})"},
+    "Earth-fixed axes": lambda lat, lon: dict(zip(("ecef_x", "ecef_y", "ecef_z"), _ecef(lat, lon), strict=True)),
+    "axes of one letter": lambda lat, lon: dict(zip("XYZ", _ecef(lat, lon), strict=True)),
+    "in one word": lambda lat, lon: {"truelat": lat, "truelon": lon},
+    "in another language": lambda lat, lon: {"latitud_real": lat, "longitud_real": lon},
+}
+
+
+def _ecef(lat_deg: float, lon_deg: float) -> list[float]:
+    """WGS-84, by its own formula."""
+    lat, lon = math.radians(lat_deg), math.radians(lon_deg)
+    n = 6378137.0 / math.sqrt(1.0 - 6.69437999014e-3 * math.sin(lat) ** 2)
+    return [n * math.cos(lat) * math.cos(lon), n * math.cos(lat) * math.sin(lon), n * (1.0 - 6.69437999014e-3) * math.sin(lat)]
+
+
+@pytest.mark.parametrize(("off_deg", "shown"), [(0.01, True), (0.03, False)])
+@pytest.mark.parametrize("form", FORMS)
+def test_another_place_in_any_form_is_compared(tmp_path: Path, form: str, off_deg: float, shown: bool) -> None:
+    """1.1 km and 3.3 km to the north."""
+    table = [row | FORMS[form](row["lat_deg"] + off_deg, row["lon_deg"]) for row in rows()]
+    verdict = analyzed(tmp_path, table).summary.verdict
+    assert any("are places of one vehicle" in each for each in verdict.position_doubts) == (not shown)
+    assert verdict.id == ("inside" if shown else "not_shown")
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"position": "Gate 12, Terminal 3"},
+        {"location": "12, 3"},
+        {"x": 12.0, "y": 3.0, "z": 5.0},
+        {"dest_position": "48.1, 11.5"},
+        {"gps_lat": "n/a", "gps_lon": ""},
+        {"accel_x": 0.1, "accel_y": 0.2, "accel_z": 9.8},
+        {"gps_pos": []},
+    ],
+)
+def test_what_is_no_place_of_the_vehicle_contradicts_nothing(tmp_path: Path, more: dict[str, Any]) -> None:
+    assert analyzed(tmp_path, [row | more for row in rows()]).summary.verdict.id == "inside"
 
 
 @pytest.mark.parametrize("name", ["gps", "true"])

@@ -125,7 +125,7 @@ class LiveSettings:
         path: Path | None,
         table: tuple[list[tuple[float, list[tuple[float, float]]]], list[tuple[str, Path | None, float | None]]],
         claims: tuple[list[float], list[float], int],
-        statements: tuple[list[tuple[list[str], list[str], float | None, float | None]], list[str]],
+        statements: tuple[list[tuple[list[str], list[str], float | None, float | None]], list[str], tuple[list[list[str]], list[float]]],
         times_ns: tuple[int, int, int],
         expiry_ns: int | None,
         max_tracks: int,

@@ -105,6 +105,8 @@ pub struct Counters {
     pub n_expired: u64,
     /// Faults of ours in one record.
     pub n_internal: u64,
+    /// Records that were judged and that rest on less than they should.
+    pub n_degraded: u64,
     /// What was refused, by [`Refused`].
     pub refused: [u64; Refused::ALL.len()],
     /// Records whose position was not used, by [`Reason`].
@@ -124,6 +126,7 @@ impl Default for Counters {
             n_stale: 0,
             n_expired: 0,
             n_internal: 0,
+            n_degraded: 0,
             refused: [0; Refused::ALL.len()],
             unusable: [0; Reason::ALL.len()],
             n_unusable_otherwise: 0,
@@ -136,8 +139,9 @@ impl Counters {
         self.refused[reason as usize] += 1;
     }
 
-    /// A record was judged, and its position was not used, or was.
+    /// A record was judged, and its position was used or not.
     pub(crate) fn judged(&mut self, status: Status, reason: Option<Reason>) {
+        self.n_degraded += u64::from(status == Status::Degraded);
         if !status.usable() {
             let place = reason.and_then(|reason| self.unusable.get_mut(reason as usize));
             *place.unwrap_or(&mut self.n_unusable_otherwise) += 1;
@@ -162,6 +166,7 @@ impl Counters {
             ("n_stale", self.n_stale),
             ("n_expired", self.n_expired),
             ("n_internal", self.n_internal),
+            ("n_degraded", self.n_degraded),
         ];
         let refused = Refused::ALL.into_iter().zip(self.refused).map(|(reason, n)| (format!("refused_{}", reason.id()), n));
         // Most reasons are none of a stream: a count of nothing is left out.
@@ -173,7 +178,7 @@ impl Counters {
     pub(crate) fn write(&self, to: &mut Writer) {
         let own = [self.n_bytes, self.n_frames, self.n_records, self.n_duplicate, self.n_reordered, self.n_stale, self.n_expired];
         let last = self.unusable.into_iter().chain([self.n_unusable_otherwise]);
-        own.into_iter().chain([self.n_internal]).chain(self.refused).chain(last).for_each(|n| to.u64(n));
+        own.into_iter().chain([self.n_internal, self.n_degraded]).chain(self.refused).chain(last).for_each(|n| to.u64(n));
     }
 
     pub(crate) fn read(from: &mut Reader<'_>) -> Result<Self, Damaged> {
@@ -186,6 +191,7 @@ impl Counters {
             n_stale: from.u64()?,
             n_expired: from.u64()?,
             n_internal: from.u64()?,
+            n_degraded: from.u64()?,
             ..Self::default()
         };
         let Self { refused, unusable, n_unusable_otherwise, .. } = &mut counters;

@@ -31,7 +31,7 @@ mod zones;
 pub use claims::{CATEGORIES, Claim, Claims};
 pub use codec::Damaged;
 pub use counters::{Counters, Refused};
-pub use decode::{Format, StatementRow, Statements};
+pub use decode::{Format, PlaceWords, StatementRow, Statements};
 pub use input::Input;
 pub use lane::Lane;
 pub use output::{EpochOut, Kind, NUMBERS, Output, Transition, Turn};

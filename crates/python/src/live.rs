@@ -11,8 +11,8 @@ use navbound_core::monitor::rnp::{self, Chain};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Risk};
 use navbound_live::journal::{self, Next};
 use navbound_live::{
-    Assigned, CATEGORIES, Claims, Course, EpochOut, Format, Input, Lane, Output, Settings, Splitter, StatementRow, Statements, Table,
-    TrackId, Zone,
+    Assigned, CATEGORIES, Claims, Course, EpochOut, Format, Input, Lane, Output, PlaceWords, Settings, Splitter, StatementRow, Statements,
+    Table, TrackId, Zone,
 };
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
@@ -44,7 +44,7 @@ struct LiveSettings(Settings);
 impl LiveSettings {
     /// `judging`: format, name of a receiver's track, method, method of a track that states a flight technical error. `risks`: accuracy, integrity. `monitor`: six times of the chain, raise delay,
     /// clear delay, clear ratio, stale time. `table`: areas, and what is assigned to tracks. `claims`: standard deviation by NACp, radius of
-    /// containment by NIC, least SIL. `statements`: kinds of statements of lines, and words of a mode that is none. `times_ns`: lateness, ahead, retention.
+    /// containment by NIC, least SIL. `statements`: kinds of statements of lines, words of a mode that is none, and parts of names of other places with how far these may be away. `times_ns`: lateness, ahead, retention.
     #[new]
     #[allow(clippy::too_many_arguments)]
     fn new(
@@ -56,7 +56,7 @@ impl LiveSettings {
         path: Option<PyRef<'_, Path>>,
         table: (Vec<ZoneRow>, Vec<TrackRow<'_>>),
         claims: ([f64; CATEGORIES], [f64; CATEGORIES], u8),
-        statements: (Vec<StatementRow>, Vec<String>),
+        statements: (Vec<StatementRow>, Vec<String>, PlaceWords),
         times_ns: (i64, i64, i64),
         expiry_ns: Option<i64>,
         max_tracks: usize,
@@ -98,7 +98,7 @@ impl LiveSettings {
             path: path.map(|path| course(&path)),
             table: Table { zones: zones.into_iter().map(zone).collect(), tracks: of_tracks },
             claims: Claims { sigma_m, containment_m, least_sil },
-            statements: Arc::new(Statements::new(statements.0, statements.1)),
+            statements: Arc::new(Statements::new(statements.0, statements.1, statements.2)),
             lateness_ns: times_ns.0,
             ahead_ns: times_ns.1,
             retention_ns: times_ns.2,

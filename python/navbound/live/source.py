@@ -99,15 +99,16 @@ class File:
         self._file.close()
 
 
-class StandardInput:
-    """What another program writes."""
+class Pipe:
+    """What another program writes: standard input, or a pipe that has a name."""
 
     live = True
     up = True
     size: int | None = None
 
-    def __init__(self) -> None:
-        self._descriptor = sys.stdin.fileno()
+    def __init__(self, path: Path | None = None) -> None:
+        self._own = None if path is None else path.open("rb", buffering=0)
+        self._descriptor = (self._own or sys.stdin).fileno()
 
     def read(self, timeout_s: float) -> bytes | None:
         """Take the next bytes: as :class:`Source` says."""
@@ -119,7 +120,9 @@ class StandardInput:
         """What was read is gone from a pipe."""
 
     def close(self) -> None:
-        """It belongs to the process."""
+        """Give a pipe back; standard input belongs to the process."""
+        if self._own is not None:
+            self._own.close()
 
 
 class _Line:
@@ -290,6 +293,19 @@ HEARD = "-, tcp://host:port, udp://host:port or serial:///dev/ttyACM0?baud=11520
 SOURCES = "a file, -, tcp://host:port, udp://host:port or serial:///dev/ttyACM0?baud=115200"
 
 
+def is_pipe(name: str) -> bool:
+    """Whether a source is standard input or a pipe: what is read of it is gone."""
+    try:
+        return name == "-" or ("://" not in name and Path(name).is_fifo())
+    except (OSError, ValueError):
+        return False
+
+
+def is_stream(name: str) -> bool:
+    """Whether the time at which bytes of a source arrive means something; nothing is looked at before they are judged."""
+    return "://" in name or is_pipe(name)
+
+
 def open_source(name: str, *, lines: bool = False, undated: bool = False, chunk: int = CHUNK) -> Source:
     """Open a source.
 
@@ -312,7 +328,9 @@ def open_source(name: str, *, lines: bool = False, undated: bool = False, chunk:
         Not the name of a source.
     """
     if name == "-":
-        return StandardInput()
+        return Pipe()
+    if is_pipe(name):
+        return Pipe(Path(name))
     if "://" not in name:
         if undated:
             raise InputError("source", name, domain=f"{HEARD}: these messages have no time but that of their arrival, which a file lacks")

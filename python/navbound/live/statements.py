@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping
 
 from navbound import _core
-from navbound.read.checks.statements import BARE_LENGTHS, BEFORE, KINDS, kind_of, speaks_of_integrity
+from navbound.read.checks.statements import (
+    BARE_LENGTHS,
+    BEFORE,
+    INERTIAL_APART_M,
+    KINDS,
+    PLACES_APART_M,
+    kind_of,
+    place_words,
+    speaks_of_integrity,
+)
 from navbound.read.quantities import POSITION_TIME_NAMES, QUANTITIES, QUANTITY, STATED_QUANTITIES, UNITS
 from navbound.table.columns import COVARIANCE
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
 
 _JUDGED = frozenset({"sigma_e_m", "sigma_n_m", "epu_m", "rc_m", "nac_p", "nic", "nuc_p", "pic", "hpl_m", "status", *COVARIANCE})
 """Quantities of tables that bound a position or speak for it. Under a name that is none of the contract their value is not understood."""
@@ -23,8 +29,11 @@ _USABLE_MODES = frozenset({"coasting"})
 Kinds = list[tuple[list[str], list[str], float | None, float | None]]
 
 
-def for_core() -> tuple[Kinds, list[str]]:
-    """Kinds as names, words and the range of numbers that say nothing against the position; and words of ``nav_mode`` against it."""
+Places = tuple[list[list[str]], list[float]]
+
+
+def for_core() -> tuple[Kinds, list[str], Places]:
+    """Kinds as names, words and the range of numbers that say nothing against the position; words of a mode against it; other places."""
     judged = [q for q in QUANTITIES if q.name in _JUDGED] + [q for q in STATED_QUANTITIES if q.name != "alert"]
     named = [*_CONTRACT, *POSITION_TIME_NAMES, *sorted(BARE_LENGTHS), *(name for q in judged for name in (q.name, *q.aliases))]
     lengths = {name.removesuffix("_m") for q in judged if q.si == "m" for name in (q.name, *q.aliases)} | BARE_LENGTHS
@@ -38,12 +47,20 @@ def for_core() -> tuple[Kinds, list[str]]:
         least, most = (None if math.isinf(each) else each for each in (kind.below, kind.above))
         kinds.append((sorted({*spelled, *several}.difference(named)), sorted(kind.fine), least, most))
     mode = kind_of("nav_mode")
-    return kinds, sorted((mode.against if mode is not None else frozenset()) - _USABLE_MODES)
+    modes = sorted((mode.against if mode is not None else frozenset()) - _USABLE_MODES)
+    return kinds, modes, (place_words(), [PLACES_APART_M, INERTIAL_APART_M])
+
+
+_SHOWN = 20
+"""Keys that a sentence names; of those that may speak of accuracy or integrity all. [1]"""
 
 
 def unread(keys: Iterable[str]) -> str:
-    """A sentence about keys that nothing reads; by the rule of tables some of them speak of accuracy or integrity."""
+    """A sentence about keys that nothing reads, with how often each came where that is known; some may speak of accuracy or integrity."""
+    counts = keys if isinstance(keys, Mapping) else {}
     names = sorted(keys)
+    shown = [f"{counts[name]} {name}" if name in counts else name for name in names[:_SHOWN]]
+    others = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
     speaking = [name for name in names if speaks_of_integrity(name)]
     more = f"; by their names these may speak of accuracy or integrity, and nothing is judged by them: {', '.join(speaking)}"
-    return f"keys that nothing reads: {', '.join(names)}{more if speaking else ''}"
+    return f"keys that nothing reads: {', '.join(shown)}{others}{more if speaking else ''}"

@@ -34,6 +34,7 @@ UNITS: dict[str, dict[str, float]] = {
         **dict.fromkeys(("km/h", "kmh", "kph"), 1 / 3.6),
         "ft/min": METRES_PER_FT / 60,
         "fpm": METRES_PER_FT / 60,
+        "mph": 0.44704,
     },
     "hpa": {**dict.fromkeys(("hpa", "mbar", "mb"), 1.0), "inhg": 33.863886},
     "1": {"1": 1.0, "": 1.0},
@@ -119,7 +120,12 @@ QUANTITIES: tuple[Quantity, ...] = (
         ft="geoaltitude geoaltitude_ft alt_geom height_ft",
     ),
     _q("altitude_m", -2e3, 1e5, m="alt_m", ft="altitude altitude_ft alt_baro pressure_altitude"),
-    _q("ground_track_rad", -2 * math.pi, 2 * math.pi, deg="track track_deg ground_track true_track cog"),
+    _q(
+        "ground_track_rad",
+        -2 * math.pi,
+        2 * math.pi,
+        deg="track track_deg ground_track true_track cog course course_over_ground true_course track_true trk track_angle",
+    ),
     _q(
         "ground_speed_mps",
         0.0,
@@ -128,7 +134,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         mps="speed_mps vel_m_s",
         kmh="speed_kmh speed_km_h speed_kph ground_speed_kmh gs_kmh",
         # Names that are in use for several units: with their unit alone.
-        written="speed velocity spd speed_over_ground",
+        written="speed velocity spd speed_over_ground gnd_spd gndspd groundspd gspeed vg hspeed hspd horizontal_speed speed_2d speed2d",
     ),
     _q("vel_n_mps", -2e4, 2e4, mps="vel_n_m_s vn_mps vn_m_s vn velocity_n velocity_north vel_north north_velocity v_north"),
     _q("vel_e_mps", -2e4, 2e4, mps="vel_e_m_s ve_mps ve_m_s ve velocity_e velocity_east vel_east east_velocity v_east"),
@@ -236,6 +242,9 @@ some of which mean something else elsewhere."""
 
 OPENSKY_VELOCITY: dict[str, tuple[str, str]] = {"track": ("icao24", "text"), "ground_speed_mps": ("velocity", "mps")}
 """Some columns of the same, under its own names: who flies, and its speed."""
+
+DUMP1090_SPEED, DUMP1090 = ("speed", "kt"), frozenset({"hex", "seen_pos", "speed"})
+"""The speed of dump1090's aircraft, and the names by which they are known. Provenance: standard, from knowledge of the format."""
 
 FLIGHTRADAR24: dict[str, tuple[str, str]] = {
     "est_lat_rad": ("position latitude", "deg"),

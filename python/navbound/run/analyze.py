@@ -36,6 +36,7 @@ from navbound.run.pieces import (
     in_pieces,
     is_large,
 )
+from navbound.run.summary.usual import period_s
 from navbound.table.arguments import checked
 from navbound.table.columns import HEARD
 from navbound.table.declare import schema
@@ -391,6 +392,5 @@ def _labels(epochs: pl.DataFrame) -> dict[str, str]:
 
 
 def _period(epochs: pl.DataFrame) -> float:
-    """Usual time between epochs of a track; 1 s where no track has two. [s]."""
-    step = epochs.select(pl.col("time_ns").diff().over("track").median() * 1e-9).item()
-    return float(step) if step is not None and step > 0 else 1.0
+    """Time between epochs of a track. [s]."""
+    return period_s(epochs.select(pl.col("time_ns").diff().over("track"))["time_ns"].drop_nulls().to_numpy(writable=True))

@@ -41,6 +41,9 @@ def require_there(paths: Iterable[str | Path]) -> None:
         require_no_device(path)
 
 
+_STANDARD_INPUT = "/dev/stdin"
+
+
 def require_no_device(path: str | Path) -> None:
     """Refuse a device (``/dev/zero``): nothing says that what it gives ends. A terminal or a pipe under ``/dev/stdin`` is none of these.
 
@@ -55,6 +58,9 @@ def require_no_device(path: str | Path) -> None:
         return
     if stat.S_ISBLK(mode) or (stat.S_ISCHR(mode) and not os.path.samefile(path, os.devnull) and not _is_terminal(path)):
         raise FormatError(path, "a device, not a file")
+    # What is read of it once is gone, and every file is looked at before it is read. Standard input has a name of its own.
+    if stat.S_ISFIFO(mode) and os.fspath(path) != _STANDARD_INPUT:
+        raise FormatError(path, "a pipe, not a file; write what comes out of it to a file first (`navbound live` judges a pipe as it is)")
 
 
 def _is_terminal(path: str | Path) -> bool:

@@ -143,7 +143,7 @@ pub(super) fn position(line: &[u8], statements: &Statements, passed_over: &mut P
 /// A line, and what it says against itself under other keys.
 fn stated(parsed: &Line<'_>, line: &[u8], statements: &Statements, passed_over: &mut PassedOver) -> Decoded {
     let position = whole(parsed)?;
-    let against = statements::heard(line, &KEYS, statements, passed_over);
+    let against = statements::heard(line, &KEYS, position.lat_rad.zip(position.lon_rad), statements, passed_over);
     let stopped = parsed.nav_mode.as_deref().is_some_and(|mode| statements.stopped(mode));
     let status = if against { Status::InvalidInput } else { Status::NotAvailable };
     let refused = (against || stopped) && position.status.usable();

@@ -7,7 +7,7 @@ mod squitters;
 mod statements;
 
 pub(crate) use statements::PassedOver;
-pub use statements::{StatementRow, Statements};
+pub use statements::{PlaceWords, StatementRow, Statements};
 
 use crate::claims::Claims;
 use crate::codec::{Damaged, Reader, Writer};

@@ -13,6 +13,61 @@ pub struct Statements {
     by_name: BTreeMap<String, usize>,
     /// Words of `nav_mode` that speak against the position.
     modes: BTreeSet<String>,
+    places: Places,
+}
+
+/// Parts of names by which tables know another place of the vehicle.
+#[derive(Debug, Clone, Default, PartialEq)]
+struct Places {
+    latitude: BTreeSet<String>,
+    longitude: BTreeSet<String>,
+    /// Of a place that is none of the vehicle now.
+    of_others: BTreeSet<String>,
+    /// Of one that inertial sensors alone keep.
+    inertial: BTreeSet<String>,
+    /// How far another place may be away, and one of inertial sensors \[m\].
+    apart_m: [f64; 2],
+}
+
+/// Parts of names: latitude, longitude, what is none of the vehicle, inertial sensors; and how far such places may be away \[m\].
+pub type PlaceWords = ([Vec<String>; 4], [f64; 2]);
+
+/// A position in radians.
+pub(super) type LatLon = (f64, f64);
+const EARTH_M: f64 = 6_371_008.8;
+
+impl Places {
+    /// Whether a number under a name is a coordinate of the vehicle that its position contradicts.
+    fn contradict(&self, key: &str, value: &Value, (lat_rad, lon_rad): LatLon) -> bool {
+        let parts = parts(key);
+        let any = |words: &BTreeSet<String>| parts.iter().any(|part| words.contains(part.trim_end_matches(|c: char| c.is_ascii_digit())));
+        let (own_rad, scale_m) = match (any(&self.latitude), any(&self.longitude)) {
+            (true, _) => (lat_rad, EARTH_M),
+            (_, true) => (lon_rad, EARTH_M * libm::cos(lat_rad)),
+            _ => return false,
+        };
+        let number = value.as_f64().or_else(|| value.as_str().and_then(|text| text.trim().parse().ok()));
+        // Who has no position writes zeros.
+        let Some(number) = number.filter(|number| *number != 0.0 && !any(&self.of_others)) else { return false };
+        let unit = |name: &str| parts.iter().any(|part| part == name);
+        let other_rad = if unit("rad") { number } else { (number * if unit("e7") || unit("1e7") { 1e-7 } else { 1.0 }).to_radians() };
+        let apart_m = libm::remainder(other_rad - own_rad, core::f64::consts::TAU).abs() * scale_m;
+        let [of_any, of_inertial] = self.apart_m;
+        apart_m > if any(&self.inertial) { of_inertial } else { of_any }
+    }
+}
+
+/// Parts of a name, in small letters: at what is neither letter nor digit, and before a capital.
+fn parts(name: &str) -> Vec<String> {
+    let (mut parted, mut last) = (String::new(), '_');
+    for c in name.chars() {
+        if c.is_ascii_uppercase() && (last.is_ascii_lowercase() || last.is_ascii_digit()) {
+            parted.push('_');
+        }
+        parted.push(c.to_ascii_lowercase());
+        last = c;
+    }
+    parted.split(|c: char| !c.is_ascii_alphanumeric()).map(str::to_owned).collect()
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -45,9 +100,11 @@ impl Kind {
 pub type StatementRow = (Vec<String>, Vec<String>, Option<f64>, Option<f64>);
 
 impl Statements {
-    /// Of kinds, and of words of `nav_mode` that speak against the position.
-    pub fn new(kinds: Vec<StatementRow>, modes: Vec<String>) -> Self {
-        let mut all = Self { modes: modes.into_iter().collect(), ..Self::default() };
+    /// Of kinds, of words of `nav_mode` that speak against the position, and of names of other places.
+    pub fn new(kinds: Vec<StatementRow>, modes: Vec<String>, (words, apart_m): PlaceWords) -> Self {
+        let [latitude, longitude, of_others, inertial] = words.map(|each| each.into_iter().collect());
+        let places = Places { latitude, longitude, of_others, inertial, apart_m };
+        let mut all = Self { modes: modes.into_iter().collect(), places, ..Self::default() };
         for (names, fine, least, most) in kinds {
             all.by_name.extend(names.into_iter().map(|name| (plain(&name), all.kinds.len())));
             all.kinds.push(Kind { fine: fine.into_iter().collect(), within: [least, most] });
@@ -76,6 +133,14 @@ impl Statements {
         }
     }
 
+    /// Whether a value is a coordinate of another place of the vehicle, or an object that holds one.
+    fn elsewhere(&self, key: &str, value: &Value, at: LatLon) -> bool {
+        match value {
+            Value::Object(inner) => inner.iter().any(|(name, each)| self.elsewhere(&format!("{key}_{name}"), each, at)),
+            _ => self.places.contradict(key, value, at),
+        }
+    }
+
     /// Whether a position that is kept in this way is none.
     pub(super) fn stopped(&self, mode: &str) -> bool {
         self.modes.contains(&spelled(mode))
@@ -101,7 +166,7 @@ fn word(value: &Value) -> String {
 }
 
 /// Names of keys that are counted; further ones are counted together.
-const MOST_NAMES: usize = 20;
+const MOST_NAMES: usize = 200;
 /// Characters of a name that are kept.
 const LONGEST_NAME: usize = 40;
 const OTHERS: &str = "(others)";
@@ -141,13 +206,15 @@ impl PassedOver {
 
 /// Whether a line speaks against its position under a key that is not `known`; the other such keys are counted. One that cannot be read to
 /// its end (a number that is none, half of a character, a hundred brackets) may say anything, and is not believed.
-pub(super) fn heard(line: &[u8], known: &[&str], statements: &Statements, passed_over: &mut PassedOver) -> bool {
+pub(super) fn heard(line: &[u8], known: &[&str], at: Option<LatLon>, statements: &Statements, passed_over: &mut PassedOver) -> bool {
     let mut from = serde_json::Deserializer::from_slice(line);
-    from.deserialize_map(Others { known, statements, passed_over }).unwrap_or(true)
+    from.deserialize_map(Others { known, at, statements, passed_over }).unwrap_or(true)
 }
 
 struct Others<'a> {
     known: &'a [&'a str],
+    /// The position of the line.
+    at: Option<LatLon>,
     statements: &'a Statements,
     passed_over: &'a mut PassedOver,
 }
@@ -166,9 +233,13 @@ impl<'de> Visitor<'de> for Others<'_> {
                 map.next_value::<IgnoredAny>()?;
                 continue;
             }
-            match self.statements.speaks_against(&key, &map.next_value()?) {
+            let value: Value = map.next_value()?;
+            match self.statements.speaks_against(&key, &value) {
                 Some(so) => against |= so,
-                None => self.passed_over.count(&key),
+                None => {
+                    against |= self.at.is_some_and(|at| self.statements.elsewhere(&key, &value, at));
+                    self.passed_over.count(&key);
+                }
             }
         }
         Ok(against)

@@ -154,3 +154,34 @@ fn a_position_that_is_led_ahead_of_its_speed_is_not_believed() {
     begun.step(&Input::End { arrival: None }, &mut all);
     assert_eq!(epochs_of(&all, "d").iter().map(|e| e.reason).collect::<Vec<_>>(), epochs.iter().map(|e| e.reason).collect::<Vec<_>>());
 }
+
+/// Keys of lines under which another place of the vehicle stands; the position is 0.5 rad north, 0.1 rad east.
+#[test]
+fn a_line_with_another_place_of_the_vehicle_is_not_believed() {
+    let lat_deg = 0.5_f64.to_degrees();
+    let of = |more: &str| {
+        let place = placed(0.5, &format!(",\"ground_speed_mps\":0.0,{more}"));
+        from_file((0..2).map(|k| line("d", f64::from(k), &place))).0.first().map(|epoch| epoch.status)
+    };
+    for far in [
+        format!("\"gps_lat\":{},\"gps_lon\":{}", lat_deg + 0.1, 0.1_f64.to_degrees()),
+        "\"lat\":10,\"lon\":10".to_owned(),
+        "\"position\":{\"lat_deg\":10,\"lon_deg\":10}".to_owned(),
+        "\"EST_LAT_RAD\":0.6".to_owned(),
+        "\"gpsLatitude\":\"10.5\"".to_owned(),
+        format!("\"gps_lat_e7\":{:.0}", (lat_deg + 0.1) * 1e7),
+        format!("\"irs_lat\":{}", lat_deg + 0.3),
+    ] {
+        assert_eq!(of(&far), Some(Status::InvalidInput), "{far}");
+    }
+    for near in [
+        format!("\"gps_lat\":{},\"gps_lon\":{}", lat_deg + 0.01, 0.1_f64.to_degrees() - 0.01),
+        format!("\"gps_lat_e7\":{:.0}", lat_deg * 1e7),
+        "\"gps_lat\":0.0,\"gps_lon\":0.0".to_owned(),
+        "\"dest_lat\":10.0,\"airport_lon\":10.0".to_owned(),
+        format!("\"irs_lat\":{}", lat_deg + 0.1),
+        "\"latency_s\":0.2,\"flat\":5".to_owned(),
+    ] {
+        assert_eq!(of(&near), Some(Status::Ok), "{near}");
+    }
+}

@@ -188,7 +188,9 @@ def _opened(source: str, form: str) -> Source:
 
 
 def _is_live(source: str) -> bool:
-    return "://" in source or source == "-" or source.startswith("simulated:")
+    from navbound.live.source import is_stream  # noqa: PLC0415
+
+    return is_stream(source) or source.startswith("simulated:")
 
 
 class _Begun:

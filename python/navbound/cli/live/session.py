@@ -134,11 +134,11 @@ def _settings(source: str, form: str | None, *, spec: str, path: str | None, met
     from navbound import live  # noqa: PLC0415
     from navbound.live.recording import has_path  # noqa: PLC0415
     from navbound.live.settings import FORMATS  # noqa: PLC0415
-    from navbound.live.source import format_of  # noqa: PLC0415
+    from navbound.live.source import format_of, is_stream  # noqa: PLC0415
     from navbound.rnp.requirement import requirement  # noqa: PLC0415
 
-    known = form or (None if "://" in source or source == "-" else format_of(source))
-    if known is None and ("://" in source or source == "-"):
+    known = form or (None if is_stream(source) else format_of(source))
+    if known is None and is_stream(source):
         raise InputError("format", "none", domain=f"{', '.join(FORMATS)} with --format: a stream is not guessed")
     selected = method or ("tse-exact" if has_path(Path(source)) else "")
     if Path(source).is_dir():
@@ -391,6 +391,7 @@ def compare(a: Annotated[Path, typer.Argument(help="Folder of a session.")], b: 
 
 def _ended(session: Session, settings: Settings, *, json: bool) -> None:
     from navbound.live.sinks import tables  # noqa: PLC0415
+    from navbound.live.statements import unread  # noqa: PLC0415
 
     counters = session.counters()
     if session.n_epochs:
@@ -408,13 +409,19 @@ def _ended(session: Session, settings: Settings, *, json: bool) -> None:
     if not session.n_epochs:
         needs = "; a line is an object with at least v (1), track, time_ns, est_lat_rad, est_lon_rad" if settings.format == "json" else ""
         sentence += f"; no epoch was judged: nothing of the source is read as {settings.format}{needs}; --format names what it sends"
+    if degraded := counters["n_degraded"]:
+        sentence += f"; {degraded:g} epochs are degraded"
     if keys := session.passed_over():
-        sentence += f"; keys that nothing reads: {', '.join(f'{n} {name}' for name, n in keys.items())}"
+        sentence += f"; {unread(keys)}"
     if session.unfinished:
         sentence += f"; {session.unfinished}"
+    # A session that was resumed counts the epochs of before among those that are not used.
+    unused = session.n_epochs == sum(n for name, n in counters.items() if name.startswith("unusable_"))
+    if session.n_epochs and unused:
+        sentence += "; no position was used"
     if json:
         say(sentence)
     else:
         out_console.print(sentence, markup=False, highlight=False, soft_wrap=True)
-    if session.unfinished or not session.n_epochs:
+    if session.unfinished or not session.n_epochs or unused:
         raise typer.Exit(NO_VERDICT)

@@ -158,6 +158,7 @@ class Checker:
         self._n = np.zeros(len(_REASON_ID), dtype=np.int64)
         self._n_steps = self._n_fast = self._n_dated = self._n_rows = self._n_doubted = self._n_twice = 0
         self._largest = self._fastest = self._oldest_s = self._furthest_m = 0.0
+        self._n_unknown = 0
         self._ages: dict[str, NDArray[np.int64]] = {}
         self._n_of: Counter[str] = Counter()
 
@@ -199,7 +200,9 @@ class Checker:
         self._ages[track] = self._ages.get(track, np.zeros(3, dtype=np.int64)) + np.array([dated.sum(), n_old, n_silent])
         plausible = code[dated] == 0
         self._oldest_s = max(self._oldest_s, float(age_s[plausible].max(initial=0.0)))
-        self._furthest_m = max(self._furthest_m, float(np.nan_to_num(age_s * speed_mps[dated])[plausible].max(initial=0.0)))
+        moved_m = (age_s * speed_mps[dated])[plausible]
+        self._n_unknown += int(np.isnan(moved_m).sum())
+        self._furthest_m = max(self._furthest_m, float(np.nan_to_num(moved_m).max(initial=0.0)))
 
     def _track(self, group: pl.DataFrame) -> _core.PlausibleTrack:
         name = group["track"][0]
@@ -242,9 +245,13 @@ class Checker:
             if n_old := sum(int(each[1]) for each in self._ages.values()):
                 words += f" {n_old} positions that are older than {limits.fix_latency_s:g} s count as held."
             if self._oldest_s > 0.0:
+                moved = (
+                    f"the aircraft moved up to {self._furthest_m:.0f} m" if self._furthest_m else "nobody knows how far the aircraft moved"
+                )
+                more = f" ({self._n_unknown} state no speed)" if self._furthest_m and self._n_unknown else ""
                 words += (
-                    f" The others are up to {self._oldest_s:.2g} s old, in which the aircraft moved up to {self._furthest_m:.0f} m: a "
-                    "bound is of the time of the position, a truth of the time of the row."
+                    f" The others are up to {self._oldest_s:.2g} s old, in which {moved}{more}: a bound is of the time of the position, a "
+                    "truth of the time of the row."
                 )
         repeated, stale, jump, unsettled, late, ahead = (int(k) for k in n[1:])
         counts = (repeated, stale, jump + self._n_twice, unsettled, late, ahead)

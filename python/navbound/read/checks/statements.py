@@ -414,7 +414,10 @@ def _speaks_of_distance_from_truth(name: str) -> bool:
     return apart and (of_truth or of_reference)
 
 
-_LATITUDE = _words("lat latitude lon lng longitude")
+_RECEIVERS = _words("true gps gnss raw irs ins fms adsb own est fix rtk ref")
+_LATITUDES = _words("lat latitude latitud breite") | {f"{whose}lat" for whose in _RECEIVERS}
+_LONGITUDES = _words("lon lng longitude longitud laenge länge") | {f"{whose}{lon}" for whose in _RECEIVERS for lon in ("lon", "lng")}
+_LATITUDE = _LATITUDES | _LONGITUDES
 _NO_VEHICLE = _NO_TRUTH | _words(
     "airport origin destination dest departure dep arrival arr home target goal next prev previous start end first last site sensor radar "
     "beacon antenna cpr centre center cell grid tile offset scale speed vel velocity rate err error sigma std var acc accuracy axis "
@@ -447,7 +450,28 @@ def other_place(name: str) -> Place | None:
     parts = _parts(name)
     words = {part.rstrip("0123456789") for part in parts}
     whose = tuple(re.sub("|".join(sorted(_LATITUDE, key=len, reverse=True)), "", part) for part in parts)
-    return Place("est_lat_rad" if words & {"lat", "latitude"} else "est_lon_rad", whose, not _INERTIAL.isdisjoint(words))
+    return Place("est_lat_rad" if words & _LATITUDES else "est_lon_rad", whose, not _INERTIAL.isdisjoint(words))
+
+
+def name_parts(name: str) -> list[str]:
+    """Parts of a name, in small letters: at what is neither letter nor digit, and before a capital."""
+    return _parts(name)
+
+
+def is_no_vehicle(name: str) -> bool:
+    """Whether a name is one of a place that is none of the vehicle now."""
+    return not _NO_VEHICLE.isdisjoint(part.rstrip("0123456789") for part in _parts(name))
+
+
+def place_words() -> list[list[str]]:
+    """Parts of names of a latitude, a longitude, what is none of the vehicle now, and what inertial sensors keep: the same rule live."""
+    return [sorted(words) for words in (_LATITUDES, _LONGITUDES, _NO_VEHICLE, _INERTIAL)]
+
+
+PLACES_APART_M = 1852.0
+"""Another place of the vehicle, of whatever sensor, contradicts the position beyond it. Provenance: ours. [m]"""
+INERTIAL_APART_M = 10 * 1852.0
+"""The same where inertial sensors alone keep the place: what RNP 10 allows them. Provenance: ours. [m]"""
 
 
 def speaks_of_integrity(name: str) -> bool:

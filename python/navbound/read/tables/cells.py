@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import polars as pl
 
 from navbound.read.quantities import QUANTITY, UNITS
-from navbound.read.tables.columns import Column
+
+if TYPE_CHECKING:
+    from navbound.read.tables.columns import Column
 
 MISSING = r"(?i)^([+-]?nan(\(\w*\))?)?$"
 """Texts of a number that is missing."""

@@ -14,13 +14,14 @@ from navbound.read.checks.statements import (
     NUC,
     READSB_TYPE,
     kind_of,
-    other_place,
     speaks_of_accuracy,
     speaks_of_integrity,
     speaks_of_level,
 )
 from navbound.read.own_positions import READSB
 from navbound.read.quantities import (
+    DUMP1090,
+    DUMP1090_SPEED,
     FLIGHTRADAR24,
     LEVEL_QUANTITIES,
     OPENSKY_STATES,
@@ -36,6 +37,7 @@ from navbound.read.quantities import (
     WRITTEN,
     Quantity,
 )
+from navbound.read.tables.other_places import Place, find
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Mapping, Sequence
@@ -78,10 +80,12 @@ class Assignment:
         Columns in which a recorded track states the validity or the integrity of its own positions.
     again : list of Column
         Further columns of a position, a speed or a time that is read and that nobody declared: a known name stands twice.
-    places : list of Column
-        Columns of another place of the vehicle under names that nothing reads, where nobody declared which one counts.
+    places : list of Place
+        Other places of the vehicle under names that nothing reads, where nobody declared which one counts.
     absent : frozenset of str
         Quantities that no column is to be read as, nor made of others.
+    speed : str
+        The column of a speed over the ground whose unit nobody states; empty where there is none. It is one of those that are not used.
     """
 
     columns: dict[str, Column]
@@ -89,8 +93,9 @@ class Assignment:
     unused: list[str]
     statements: list[tuple[str, Kind]] = field(default_factory=list)
     again: list[Column] = field(default_factory=list)
-    places: list[Column] = field(default_factory=list)
+    places: list[Place] = field(default_factory=list)
     absent: frozenset[str] = frozenset()
+    speed: str = ""
 
     @property
     def unread(self) -> list[str]:
@@ -225,8 +230,17 @@ def assign(
     stating = {name for name, _ in statements}
     again = _again(columns, times, {*(declared or {}), *beside}, [n for n in free if kinds.get(n) in (None, NUC)], path)
     unused = [n for n in free if n not in stating]
-    places = _places({*(declared or {}), *beside}, [n for n in unused if n not in {column.name for column in again}])
-    return Assignment(columns, times, unused, statements, again, places, absent)
+    compared = {column.name for column in again}
+    places = find([n for n in unused if n not in compared], {*(declared or {}), *beside}) if tuple(needs) == POSITION else []
+    speed = "" if tuple(needs) != POSITION or "ground_speed_mps" in columns.keys() | absent else _speed_without_unit(unused)
+    return Assignment(columns, times, unused, statements, again, places, absent, speed)
+
+
+def _speed_without_unit(free: list[str]) -> str:
+    """The first column of a name that is in use for a speed in several units."""
+    plain, (speed,) = _by_form(free), (quantity for quantity in QUANTITIES if quantity.name == "ground_speed_mps")
+    names = (alias for alias, unit in speed.aliases.items() if unit == WRITTEN)
+    return next((plain[alias] for alias in names if alias in plain), "")
 
 
 def _of_layouts(names: list[str]) -> dict[str, Column]:
@@ -234,6 +248,8 @@ def _of_layouts(names: list[str]) -> dict[str, Column]:
     layouts = [
         layout for layout in (OPENSKY_VELOCITY, OPENSKY_STATES, FLIGHTRADAR24) if {name for name, _ in layout.values()} <= set(names)
     ]
+    if set(names) >= DUMP1090 and "gs" not in names:
+        layouts.append({"ground_speed_mps": DUMP1090_SPEED})
     return {quantity: Column(quantity, name, unit) for layout in layouts for quantity, (name, unit) in layout.items()}
 
 
@@ -250,13 +266,6 @@ def _again(columns: Mapping[str, Column], times: Sequence[Column], declared: Con
     if len(times) == 1 and "time" not in declared:
         further += [column for column in _times(rest)[:1] if column.unit not in WEEK]
     return further
-
-
-def _places(declared: Container[str], free: list[str]) -> list[Column]:
-    """Columns of another place of the vehicle, in degrees unless their name says radians."""
-    places = ((name, other_place(name)) for name in free)
-    axes = [(name, place.axis) for name, place in places if place is not None and place.axis not in declared]
-    return [Column(axis, name, "rad" if _plain(name)[0].endswith("_rad") else "deg") for name, axis in axes]
 
 
 _NAMES = frozenset(

@@ -12,27 +12,22 @@ import polars as pl
 
 from navbound.errors import FormatError
 from navbound.read.checks.plausible import Limits
-from navbound.read.checks.statements import STALE_AFTER_S, other_place
+from navbound.read.checks.statements import STALE_AFTER_S
 from navbound.read.tables.cells import largest, no_field, numbers
-from navbound.read.tables.columns import NO_COLUMN, declare
+from navbound.read.tables.columns import NO_COLUMN, POSITION, declare
+from navbound.read.tables.other_places import OtherPlaces
 from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, understand
 from navbound.units import EARTH_RADIUS_M
 
 if TYPE_CHECKING:
-    from collections.abc import Container, Iterable, Mapping
+    from collections.abc import Container, Mapping
     from pathlib import Path
 
     from navbound.read.tables.columns import Assignment, Column
 
 APART_M = 100.0
 """Two columns of one position contradict each other beyond it: two antennas and two filters do not. Provenance: ours. [m]"""
-PLACES_APART_M = 1852.0
-"""Another place of the vehicle, of whatever sensor, contradicts the position beyond it. Provenance: ours. [m]"""
-INERTIAL_APART_M = 10 * 1852.0
-"""The same where inertial sensors alone keep the place: what RNP 10 allows them. Provenance: ours. [m]"""
-_MOVED_M = 100.0
-"""A place that moves by less while the vehicle moves is the origin of something. Provenance: ours. [m]"""
 SPEEDS_APART_MPS, SPEEDS_APART = 10.0, 0.1
 """Two columns of one speed contradict each other beyond this and this share of the larger; filters do not. Provenance: ours. [m/s, 1]"""
 SPEEDS_SHARE = 0.2
@@ -57,21 +52,19 @@ class Further:
         self._time = next((column for column in mapping.again if column.quantity == "time"), None)
         self._facts, self._unit = list[TimeFacts](), ""
         self._apart_m: dict[str, float] = {}
-        self._range_rad: dict[str, tuple[float, float]] = {}
+        self._places = OtherPlaces(mapping.places)
         self._speeds: dict[str, tuple[int, int, float]] = {}
         self._apart_s = 0.0
 
     def see(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
         """The next rows: those that are read, with the largest speed, and the file's."""
-        for quantity in (quantity for quantity in _SCALE_M if quantity in part.columns and self._mapping.places):
-            self._see_range(quantity, part[quantity])
-        for column in (*self._mapping.again, *self._mapping.places):
+        self._places.see(part, frame)
+        for column in self._mapping.again:
             if column.quantity not in part.columns or no_field(frame.schema[column.name]):
                 continue
             other, _ = numbers(frame[column.name], column)
             if column.quantity in _SCALE_M:
-                # Another receiver without a fix writes 0.
-                self._see_place(column, part, other.set(other == 0.0, None) if column in self._mapping.places else other)
+                self._see_place(column, part, other)
             elif column.quantity in _INDICATORS:
                 part = part.with_columns(pl.min_horizontal(column.quantity, other).alias(column.quantity))
             else:
@@ -87,27 +80,14 @@ class Further:
         apart -= 2.0 * math.pi * (apart / (2.0 * math.pi)).round()
         apart_m = part.select(apart_m=apart.abs() * _SCALE_M[column.quantity])["apart_m"]
         self._apart_m[column.name] = max(self._apart_m.get(column.name, 0.0), largest(apart_m))
-        self._see_range(column.name, other)
-
-    def _see_range(self, name: str, values: pl.Series) -> None:
-        least, most = self._range_rad.get(name, (math.inf, -math.inf))
-        bounds = pl.select(least=pl.min_horizontal(pl.lit(least), values.min()), most=pl.max_horizontal(pl.lit(most), values.max()))
-        self._range_rad[name] = bounds.row(0)
-
-    def _moved(self, names: Iterable[str]) -> bool:
-        """Whether any of some coordinates changes."""
-        ranges = [self._range_rad.get(name, (0.0, 0.0)) for name in names]
-        return any((most - least) * EARTH_RADIUS_M > _MOVED_M for least, most in ranges)
 
     def _contradicting_places(self) -> list[str]:
-        """Other places of the vehicle that are far away; one that stays while the vehicle moves is the origin of something."""
-        places = [(column, place) for column in self._mapping.places if (place := other_place(column.name)) is not None]
-        moves, words = self._moved(_SCALE_M), list[str]()
-        for column, place in places:
-            apart_m, used = self._apart_m.get(column.name, 0.0), self._mapping.columns.get(column.quantity)
-            is_origin = moves and not self._moved(other.name for other, of in places if of.whose == place.whose)
-            if used is not None and not is_origin and apart_m > (INERTIAL_APART_M if place.inertial else PLACES_APART_M):
-                words.append(self._doubt("places of one vehicle", (used.name, column.name), f"{apart_m:.0f} m", column.quantity))
+        """Other places of the vehicle that are far away."""
+        words = list[str]()
+        for place, apart_m in self._places.far():
+            quantity = place.axis or POSITION[0]
+            if (used := self._mapping.columns.get(quantity)) is not None:
+                words.append(self._doubt("places of one vehicle", (used.name, ", ".join(place.names)), f"{apart_m:.0f} m", quantity))
         return words
 
     def _see_speeds(self, name: str, one: pl.Series, other: pl.Series) -> None:

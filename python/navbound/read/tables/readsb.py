@@ -70,6 +70,10 @@ _NOW, _NOW_MS, _LEAST_MS = "now", "timestamp_ms", 1e11
 """The time in seconds, the name of the column of one in milliseconds, and the least number that is one: seconds are of the year 5138."""
 
 
+_USUAL_TYPE = "adsb_icao"
+"""The source of a position that an aircraft with an address of its own sends."""
+
+
 def is_snapshot(value: Any) -> bool:
     """Whether an object is one: a number that is the time, and the list."""
     if not isinstance(value, dict) or isinstance(value.get(_NOW), bool) or not isinstance(value.get(_NOW), (int, float)):
@@ -97,4 +101,7 @@ def records_of(path: Path, snapshots: list[Any]) -> list[dict[str, Any]]:
             records.append({time: snapshot[_NOW]} | aircraft)
     if not records:
         raise FormatError(path, "a list of no aircraft", field=_LISTS[0])
+    if (types := {each["type"] for each in records if isinstance(each.get("type"), str)}) and _USUAL_TYPE not in types:
+        # dump1090 writes how a position came only where it is not the usual way; readsb writes it always.
+        records = [{"type": _USUAL_TYPE} | each for each in records]
     return records

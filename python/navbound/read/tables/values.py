@@ -19,6 +19,7 @@ from navbound.read.tables.cells import MISSING, largest, no_field, numbers, on_g
 from navbound.read.tables.columns import POSITION, Assignment, Column, declare, is_header, position_time
 from navbound.read.tables.further import Further, Speeds
 from navbound.read.tables.names import Callsigns, one_writing
+from navbound.read.tables.speed_unit import SpeedUnit
 from navbound.read.tables.stated_units import is_row_of_units, require_same
 from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, understand, units
@@ -86,6 +87,7 @@ class Values:
         self._further, self._speeds = Further(path, mapping), Speeds(mapping.absent)
         self._nowhere, self.whole_seconds = Nowhere(), True
         self._callsigns = Callsigns()
+        self._speed = SpeedUnit(mapping.speed) if mapping.speed else None
         self._facts, self._facts_dated = list[TimeFacts](), list[TimeFacts]()
         self._dtypes: dict[str, pl.DataType] = {}
         self._n_unknown = 0
@@ -135,7 +137,7 @@ class Values:
             # `lastPosition` of readsb is an object and no time.
             self._dated = None
         part = self._with_age(self._with_unread(self._callsigns.as_tracks(part), frame), frame)
-        part = self._further.see(part, frame).with_columns(*_reasons(frame, against), *self._raw(frame))
+        part = self._with_speed(self._further.see(part, frame).with_columns(*_reasons(frame, against), *self._raw(frame)), frame)
         for name in POSITION:
             if name in part.columns:
                 self._largest[name] = max(self._largest[name], largest(part[name]))
@@ -147,6 +149,15 @@ class Values:
         else:
             rows = stated.of_satellites(self._listed_statuses(stated.with_faulty_cells(stated.worse_than_level(part), reasons, without)))
         return stated.with_statements(rows, self._statements(frame))
+
+    def _with_speed(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
+        """The numbers of a speed whose unit nobody states."""
+        if self._speed is None or no_field(frame.schema[self._speed.name]):
+            self._speed = None
+            return part
+        part = part.with_columns(self._speed.take(frame))
+        self._speed.see(part)
+        return part
 
     def _with_unread(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
         """The largest number of the columns that nothing reads though they speak of an accuracy, or of a level; it bounds nothing."""
@@ -293,8 +304,6 @@ class Values:
                 f"{name}: {self._n_unknown} epochs have a status that is none of {', '.join(status.STATUSES)} "
                 f"({', '.join(list(self._unknown_statuses)[: statements.SHOWN])}); they are not judged"
             )
-        if tuple(self._required) == POSITION and self._mapping.unused:
-            self.notes.append(f"{name}: columns not used: {_few(self._mapping.unused)}")
         self.notes += self._callsigns.words(name)
         self.notes += [f"{name}: {words_of_ground(column, n)}" for column, n in self._n_ground.items() if n]
         self._look_like_radians()
@@ -308,8 +317,22 @@ class Values:
                 self.position_doubts.append(f"{name}: “{self._dated.name}” says when positions were valid and is not read: {e.message}")
                 self._dated = None
         self._further.understand(self._dtypes)
+        self._understand_speed()
+        decided = "" if self._speed is None or not self._speed.unit else self._speed.name
+        unused = [each for each in self._mapping.unused if each != decided]
+        if tuple(self._required) == POSITION and unused:
+            self.notes.append(f"{name}: columns not used: {_few(unused)}")
         # The numbers of all rows are needed no more.
         self._facts, self._facts_dated = [], []
+
+    def _understand_speed(self) -> None:
+        if self._speed is None or (head := self._speed.head()).is_empty():
+            return
+        time, _ = converted(_written(head), self._mapping.times, self._unit)
+        self._speed.understand(head.with_columns(time.alias("time_ns"), self._track(head)))
+        notes, doubts = self._speed.words(self._path)
+        self.notes += notes
+        self.position_doubts += doubts
 
     def _understood(self, columns: list[Column], facts: list[TimeFacts]) -> str:
         return understand(TimeFacts.together(facts), columns, self._dtypes[columns[0].name], self._path, self.notes)
@@ -344,6 +367,8 @@ class Values:
         if _AGE in out.columns:
             valid_ns = pl.col("time_ns") - (pl.col(_AGE) * 1e9).round().cast(pl.Int64)
             out = out.with_columns(valid_ns.alias(POSITION_TIME)).drop(_AGE)
+        if self._speed is not None:
+            out = self._speed.made(out)
         out = self._speeds.whole(out.with_columns(self._track(out)), left_out=pl.col(_BAD).is_not_null())
         self.whole_seconds &= bool((out["time_ns"].drop_nulls() % 1_000_000_000 == 0).all())
         without = out.filter(pl.col(_BAD).is_not_null())
@@ -394,6 +419,8 @@ class Values:
     def described(self) -> dict[str, str]:
         """Quantity to the column that it was read from and its unit."""
         columns = {c.quantity: f"{c.name}:{c.unit}" for c in self._mapping.columns.values()}
+        if self._speed is not None and self._speed.unit:
+            columns["ground_speed_mps"] = f"{self._speed.name}:{self._speed.unit}"
         return columns | {"time": ", ".join(units(self._mapping.times, self._unit))}
 
     def _look_like_radians(self) -> None:

@@ -20,6 +20,7 @@ from navbound.read.quantities import POSITION_TIME
 from navbound.read.source import LARGE_BYTES, is_text_table
 from navbound.run.inputs.doubts import of_motion
 from navbound.run.pieces.flights import Flights
+from navbound.run.summary.usual import period_s
 from navbound.storage.tables import whole_tracks
 from navbound.table.columns import COVARIANCE, HORIZONTAL, VARIANCES
 
@@ -169,7 +170,7 @@ def in_pieces(path: Path, request: Request) -> InPieces:
         labels=labels.usual(),
         labels_before=checks.labels.usual(),
         with_levels=frozenset(labels.with_levels),
-        period_s=steps.median_s(),
+        period_s=steps.period_s(),
         flights=flights.words(),
         position_doubts=of_motion(plausibility, checks.speeds, checks.axes),
         scatter=checks.speeds.scatter(),
@@ -248,9 +249,8 @@ class _Steps:
         self._n += len(steps)
         self._last = (track[-1], time_ns[-1])
 
-    def median_s(self) -> float:
-        step = float(np.median(self._steps[: self._n], overwrite_input=True)) * 1e-9 if self._n else 0.0
-        return step if step > 0 else 1.0
+    def period_s(self) -> float:
+        return period_s(self._steps[: self._n])
 
 
 class _Labels:

@@ -9,14 +9,7 @@ import polars as pl
 
 from navbound import rnp
 from navbound.rnp.exposure import LONGEST_STEP_S
-
-USUAL = 0.25
-"""The usual step is the shortest that is at least this share of the steps of at most two seconds, to the millisecond: a table without every
-other or third row has two, and a receiver whose steps wander has none. Provenance: ours. [1]"""
-RESOLVED_MS = 10
-"""A shorter usual step is not known well enough from milliseconds: stamps of 600 in a second are 1 and 2 ms apart. Provenance: ours."""
-WHOLE = 0.1
-"""Times of absent epochs are whole steps apart to this share of one: transponders wander between 0.4 and 0.6 s. Provenance: ours. [1]"""
+from navbound.run.summary.usual import absent_in, usual_ms
 
 
 class Gaps:
@@ -61,9 +54,5 @@ class Gaps:
 
     def n_absent(self) -> int:
         """Epochs that the usual step leaves room for in gaps too short to count; 0 where no step is usual."""
-        n_steps = sum(self._short_ms.values())
-        usual = min((ms for ms, n in self._short_ms.items() if n >= USUAL * n_steps), default=0)
-        if usual < RESOLVED_MS:
-            return 0
-        periods = [(ms / usual, n) for ms, n in self._short_ms.items() if ms > usual]
-        return sum(n * (round(ratio) - 1) for ratio, n in periods if abs(ratio - round(ratio)) <= WHOLE)
+        usual = usual_ms(self._short_ms)
+        return sum(n * absent_in(ms / usual) for ms, n in self._short_ms.items() if ms > usual) if usual else 0

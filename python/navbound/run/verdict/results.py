@@ -59,11 +59,6 @@ def verdict_words(
             f"Between epochs nothing is known: {verdict.n_long_steps} steps are longer than a position takes to become stale, "
             f"the longest {verdict.longest_step_s:.6g} s."
         )
-    if verdict.n_absent > MANY_ABSENT * verdict.n_epochs:
-        parts.append(
-            f"{verdict.n_absent} epochs that the usual step leaves room for are absent, in gaps too short to count; "
-            "nothing is known of them."
-        )
     parts += unread_words(verdict.unread)
     judged_by = f"Judged by {judged.title} ({judged.id}, {judged.provenance})."
     worst = [] if verdict.worst_accuracy is None else [_worst(verdict.worst_accuracy, labels)]
@@ -148,11 +143,14 @@ def _thin(verdict: Verdict) -> str:
 
 def _shares(verdict: Verdict) -> str:
     """What became of all epochs."""
-    unjudged = f"{_unjudged_approaches(verdict)}{beside_procedure_words(verdict.beside)}"
+    many = verdict.n_absent > MANY_ABSENT * verdict.n_epochs
+    absent = f"; {verdict.n_absent} epochs that the usual step leaves room for are absent, in gaps too short to count" if many else ""
+    unjudged = f"{absent}{_unjudged_approaches(verdict)}{beside_procedure_words(verdict.beside)}"
     if verdict.n_epochs == 0:
         return f"there is no epoch{unjudged}"
     if verdict.n_judged == verdict.n_epochs:
-        return f"all {verdict.n_epochs} epochs are ok and judged{unjudged}"
+        there = " that are there" if many else ""
+        return f"all {verdict.n_epochs} epochs{there} are ok and judged{unjudged}"
     missing = f" ({verdict.n_missing} epochs missing in gaps or without a usable time and position)" if verdict.n_missing else ""
     kinds = {"ok and judged": verdict.n_judged, "degraded": verdict.n_degraded, f"without a bound{missing}": verdict.n_unjudged}
     return f"of {verdict.n_epochs} epochs {', '.join(f'{share(n / verdict.n_epochs)} are {kind}' for kind, n in kinds.items())}{unjudged}"

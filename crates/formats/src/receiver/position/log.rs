@@ -113,8 +113,9 @@ impl Log {
             while place + 1 < dates.len() && apart(place + 1) <= apart(place) {
                 place += 1;
             }
-            if let Some((_, dated)) = dates.get(place) {
+            if let Some((record, dated)) = dates.get(place) {
                 position.date(*dated);
+                position.forget_time_before(*record, *dated);
             }
             self.position(position.checked());
         }

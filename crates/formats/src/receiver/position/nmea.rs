@@ -10,9 +10,12 @@ use super::{Absent, Fields, Note, OfDay, Position, Reason, no_better, uncorrelat
 use crate::measured::{GGA_QUALITIES, GSA_DIMENSIONS, LEAST_SATELLITES, NMEA_MODES};
 use crate::time::{Calendar, Scale, from_calendar, from_unix, to_calendar, to_unix};
 use navbound_core::quantity::{GpsTime, Metres};
+use navbound_core::solution::plausible::DILUTION;
 
 const SECOND_NS: i64 = 1_000_000_000;
 const HALF_DAY_NS: i64 = 43_200 * SECOND_NS;
+/// A clock of a receiver without a fix that is this far from that of its first fix was not set. Provenance: ours \[s\].
+const UNSET_S: f64 = 600.0;
 /// Minutes of a time of day count 61 seconds.
 const MINUTE_NS: i64 = 61 * SECOND_NS;
 
@@ -22,6 +25,8 @@ const GBS: u32 = name(*b"GBS");
 const GLL: u32 = name(*b"GLL");
 const GNS: u32 = name(*b"GNS");
 const GSA: u32 = name(*b"GSA");
+/// Position of u-blox's own sentence, `PUBX,00`.
+const PUBX: u32 = name(*b"UBX");
 const RMC: u32 = name(*b"RMC");
 const ZDA: u32 = name(*b"ZDA");
 
@@ -57,6 +62,10 @@ pub struct Dated {
 
 pub(super) fn step(body: &[u8], record: u64) -> Step {
     let fields = Sentence(body);
+    if body.starts_with(b"PUBX,00,") {
+        let key = fields.get(2).and_then(of_day);
+        return key.map_or(Step::Passed, |OfDay(key)| Step::Date { key, kind: PUBX, dated: None, kept: true });
+    }
     let address = fields.get(0).and_then(|address| address.get(2..)).and_then(|address| <[u8; 3]>::try_from(address).ok());
     let Some(kind) = address.map(name).filter(|kind| [GGA, GST, GBS, GLL, GNS, GSA, RMC, ZDA].contains(kind)) else { return Step::Passed };
     if kind == GSA {
@@ -103,9 +112,10 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
     let (altitude, separation) = (gga.number(9), gga.number(11));
     let all = |kind| all_of_kind(messages, kind).map(|message| Sentence(&message.body));
     let of_gst = worst(all(GST).filter_map(|gst| covariance(&gst)));
-    let expected = worst(all(GBS).filter_map(|gbs| expected_errors(&gbs)));
+    let of_gbs = worst(all(GBS).filter_map(|gbs| expected_errors(&gbs)));
+    let of_pubx = sentence(PUBX).and_then(|pubx| circle(&pubx));
+    let expected = worst([of_gbs, of_pubx].into_iter().flatten());
     let enlarged = of_gst.map(|own| no_better(own, expected));
-    let of_gbs = if of_gst.is_some() { None } else { expected };
     let biased = || all(GBS).find_map(|gbs| biased_range(&gbs));
     let against = contradiction(&gga, &sentence).or_else(biased);
     let speed_mps = sentence(RMC).and_then(|rmc| rmc.number(7)).filter(|knots| *knots >= 0.0).map(|knots| knots * KNOT_MPS);
@@ -113,6 +123,8 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
     let usable = measured && lat_rad.is_some() && lon_rad.is_some();
     let absent = |reason: Reason| move |stated: String| Absent { reason, stated };
     let few = || gga.number(7).filter(|count| *count < f64::from(LEAST_SATELLITES)).map(|count| format!("{count} satellites"));
+    let of_others = || of_gbs.map(|_| Note::ExpectedErrors).or(of_pubx.map(|_| Note::CircularCovariance));
+    let substitute = if of_gst.is_some() { None } else { of_others() };
     let worse = enlarged.is_some_and(|(_, worse)| worse).then_some(Note::WorseExpectedErrors);
     Some(Position {
         record,
@@ -120,7 +132,7 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
         lat_rad,
         lon_rad,
         h_m: altitude.zip(separation).map(|(altitude, separation)| altitude + separation),
-        covariance_m2: enlarged.map(|(covariance, _)| covariance).or(of_gbs),
+        covariance_m2: enlarged.map(|(covariance, _)| covariance).or(expected),
         ground_speed_mps: speed_mps,
         ground_track_rad: track_rad,
         n_sv: gga.number(7).map(|count| count as u32),
@@ -131,8 +143,8 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
             Some(absent(Reason::NoFix)(gga.stated()))
         },
         fields: if speed_mps.is_some() { FIELDS_AND_SPEED } else { FIELDS },
-        covariance_from: if of_gst.is_some() { Some("GST") } else { of_gbs.map(|_| "GBS") },
-        notes: [(altitude.is_some() && separation.is_none()).then_some(Note::NoSeparation), worse.or(of_gbs.map(|_| Note::ExpectedErrors))],
+        covariance_from: of_gst.map(|_| "GST").or(of_gbs.map(|_| "GBS")).or(of_pubx.map(|_| "PUBX,00 hAcc, vAcc")),
+        notes: [(altitude.is_some() && separation.is_none()).then_some(Note::NoSeparation), worse.or(substitute)],
         ..Position::default()
     })
 }
@@ -142,7 +154,12 @@ fn contradiction<'a>(gga: &Sentence<'a>, sentence: &impl Fn(u32) -> Option<Sente
     let place = |of: &Sentence<'_>, at: usize| of.angle(at, [b"N", b"S"]).zip(of.angle(at + 2, [b"E", b"W"]));
     let own = place(gga, 2);
     // Status, mode, position, navigational status.
-    let beside = [("RMC", RMC, Some(2), 12, 3, 13), ("GLL", GLL, Some(6), 7, 1, ABSENT), ("GNS", GNS, None, 6, 2, 13)];
+    let beside = [
+        ("RMC", RMC, Some(2), 12, 3, 13),
+        ("GLL", GLL, Some(6), 7, 1, ABSENT),
+        ("GNS", GNS, None, 6, 2, 13),
+        ("PUBX", PUBX, None, ABSENT, 3, ABSENT),
+    ];
     let stated = beside.into_iter().find_map(|(name, kind, status, mode, at, navigational)| {
         let other = sentence(kind)?;
         let text = |at: usize| other.get(at).filter(|text| !text.is_empty()).map(String::from_utf8_lossy);
@@ -162,8 +179,14 @@ fn contradiction<'a>(gga: &Sentence<'a>, sentence: &impl Fn(u32) -> Option<Sente
         (apart_m > ONE_PLACE_M + resolution_m).then(|| format!("position of {name} {apart_m:.0} m away"))
     });
     let flat = || sentence(GSA).map(|gsa| dimensions(gsa.0)).filter(|dimensions| *dimensions < GSA_DIMENSIONS);
-    stated.or_else(|| flat().map(|fix| format!("GSA fix {fix}")))
+    let wide = || sentence(GSA).and_then(|gsa| gsa.number(16)).filter(|dilution| *dilution > DILUTION);
+    let own_word = || sentence(PUBX).and_then(|pubx| pubx.get(8)).filter(|fix| NO_FIX.contains(fix)).map(String::from_utf8_lossy);
+    let further = stated.or_else(|| flat().map(|fix| format!("GSA fix {fix}")));
+    further.or_else(|| wide().map(|hdop| format!("GSA HDOP {hdop}"))).or_else(|| own_word().map(|fix| format!("PUBX fix {fix}")))
 }
+
+/// Fixes of `PUBX,00` that are none, of dead reckoning, of the time alone, or in two dimensions.
+const NO_FIX: [&[u8]; 5] = [b"NF", b"DR", b"TT", b"G2", b"D2"];
 
 /// Navigational statuses of NMEA 0183 version 4.1 that speak against a position: caution and unsafe. `S` is safe, `V` says that none is given.
 const UNSAFE: [&str; 2] = ["C", "U"];
@@ -202,6 +225,17 @@ pub(super) fn accuracy_alone(messages: &[Message]) -> Option<u64> {
 }
 
 impl Position {
+    /// A receiver that has had no fix yet counts from midnight, or from when it was switched off: where such a time is far from that of the
+    /// first date behind it, nobody knows it.
+    pub(super) fn forget_time_before(&mut self, record: u64, dated: Dated) {
+        let without = self.record < record && self.absent.as_ref().is_some_and(|absent| absent.reason == Reason::NoFix);
+        let Some(time) = self.time.filter(|_| without) else { return };
+        let apart_s = gps_time(dated, dated.of_day.0).map_or(0.0, |of_date| of_date.seconds_since(time).abs());
+        if apart_s > UNSET_S {
+            self.time = None;
+        }
+    }
+
     /// Make a time of a time of day near a dated one; midnight may lie between them.
     pub(super) fn date(&mut self, dated: Dated) {
         let Some(OfDay(of_day_ns)) = self.of_day else { return };
@@ -336,4 +370,11 @@ fn covariance(gst: &Sentence<'_>) -> Option<[f64; 6]> {
 /// From GBS: expected errors of latitude, longitude, altitude.
 fn expected_errors(gbs: &Sentence<'_>) -> Option<[f64; 6]> {
     Some(uncorrelated(gbs.number(3)?, gbs.number(2)?, gbs.number(4)?))
+}
+
+/// From `PUBX,00`: hAcc, the root of both horizontal variances together, and vAcc.
+fn circle(pubx: &Sentence<'_>) -> Option<[f64; 6]> {
+    let (h_m, v_m) = (pubx.number(9)?, pubx.number(10)?);
+    let axis_m = h_m * core::f64::consts::FRAC_1_SQRT_2;
+    Some(uncorrelated(axis_m, axis_m, v_m))
 }

@@ -200,6 +200,8 @@ fn what_another_sentence_says_against_a_position_takes_it_away() {
     let rmc = |status: &str, mode: &str, minutes: &str| format!("GPRMC,120000.00,{status},{minutes},N,00230.0000,E,0.0,,221126,,,{mode},V");
     let gll = |status: &str, mode: &str| format!("GPGLL,4900.0000,N,00230.0000,E,120000.00,{status},{mode}");
     let gsa = |talker: &str, fix: u8| format!("{talker}GSA,A,{fix},01,02,03,04,,,,,,,,,2.0,1.0,1.7");
+    let pubx =
+        |fix: &str, minutes: &str| format!("PUBX,00,120000.00,{minutes},N,00230.0000,E,147.0,{fix},2.1,3.0,0.0,0.0,0.0,,0.9,1.2,0.8,8,0,0");
     for (other, says) in [
         (rmc("V", "N", "4900.0000"), "RMC status V"),
         (rmc("A", "S", "4900.0000"), "RMC mode S"),
@@ -210,6 +212,10 @@ fn what_another_sentence_says_against_a_position_takes_it_away() {
         (gll("A", "N"), "GLL mode N"),
         (gsa("GP", 1), "GSA fix 1"),
         (gsa("GP", 2), "GSA fix 2"),
+        (gsa("GP", 3).replace(",1.0,", ",99.9,"), "GSA HDOP 99.9"),
+        (pubx("NF", "4900.0000"), "PUBX fix NF"),
+        (pubx("DR", "4900.0000"), "PUBX fix DR"),
+        (pubx("G3", "4901.0000"), "position of PUBX 1854 m away"),
     ] {
         // Before the position, behind it, and behind its accuracy.
         for order in [[ZDA, &other, GGA, GST], [ZDA, GGA, &other, GST], [ZDA, GGA, GST, &other]] {
@@ -228,6 +234,9 @@ fn what_another_sentence_says_against_a_position_takes_it_away() {
         rmc("A", "R", "4900.02"),
         gll("A", "A"),
         gsa("GN", 3),
+        pubx("D3", "4900.0000"),
+        // Satellites of the same maker, which are no position.
+        "PUBX,03,11,23,-,,,45,010".to_owned(),
     ] {
         assert_eq!(reasons(&[ZDA, GGA, &other, GST]), [], "{other}");
     }
@@ -388,4 +397,29 @@ fn a_fix_that_is_stated_behind_a_finished_epoch_counts_for_the_next() {
     }
     let contradicted = Some(Reason::Contradicted);
     assert_eq!(reasons, [None, None, None, None, contradicted, contradicted], "one epoch late, and none missed");
+}
+
+#[test]
+fn the_accuracy_of_pubx_stands_where_no_other_does_and_is_not_passed_over() {
+    let pubx = |h_m: f64| format!("PUBX,00,120000.00,4900.0000,N,00230.0000,E,147.0,G3,{h_m},3.0,0.0,0.0,0.0,,0.9,1.2,0.8,8,0,0");
+    let alone = read_sentences(&[ZDA, GGA, &pubx(9000.0)]);
+    let covariance = alone.positions[0].covariance_m2.unwrap();
+    // hAcc is the root of both horizontal variances together.
+    assert!((covariance[0] + covariance[2] - 81e6).abs() < 1e-3 && (covariance[5] - 9.0).abs() < 1e-9, "{covariance:?}");
+    assert_eq!(alone.positions[0].covariance_from, Some("PUBX,00 hAcc, vAcc"));
+    let beside = read_sentences(&[ZDA, GGA, GST, &pubx(9000.0)]);
+    let covariance = beside.positions[0].covariance_m2.unwrap();
+    assert!((covariance[0] + covariance[2] - 81e6).abs() < 1.0, "the worse of two statements: {covariance:?}");
+    assert_eq!(beside.positions[0].covariance_from, Some("GST"));
+}
+
+#[test]
+fn a_clock_that_was_not_set_before_the_first_fix_is_no_time() {
+    let at = |of_day: &str, quality: &str| GGA.replace("120000.00", of_day).replace(",1,08,", &format!(",{quality},08,"));
+    let unset = [at("000000.00", "0"), at("000001.00", "0")];
+    let log = read_sentences(&[&unset[0], &unset[1], ZDA, GGA, GST]);
+    assert_eq!((log.positions.len(), log.absent.as_slice()), (1, &[None, None][..]));
+    // One that was set, and one behind the first date, have their times.
+    let log = read_sentences(&[&at("115959.00", "0"), ZDA, GGA, GST, &at("120500.00", "0")]);
+    assert_eq!(log.absent.iter().filter(|time| time.is_some()).count(), 2);
 }

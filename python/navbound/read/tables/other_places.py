@@ -1,0 +1,236 @@
+"""Other places of the vehicle that a table has beside the position that is read: of a second receiver, of inertial sensors, of a truth.
+
+Nobody declared which one counts. One that is far away contradicts the position, in whatever form it is written: degrees, radians, integers
+of 1e-7 degrees or of 180/2^31 degrees, degrees with minutes and hemisphere, two numbers in one field, or Earth-fixed axes. Of several forms
+that a column may have, that counts which brings it nearest.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+import polars as pl
+
+from navbound.read.checks.places import east_north_m
+from navbound.read.checks.statements import INERTIAL_APART_M, PLACES_APART_M, is_no_vehicle, name_parts, other_place
+from navbound.read.tables.cells import MISSING
+from navbound.units import EARTH_RADIUS_M
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+Axis = Literal["est_lat_rad", "est_lon_rad"]
+LAT: Axis = "est_lat_rad"
+LON: Axis = "est_lon_rad"
+_MOVED_M = 100.0
+"""A place that moves by less while the vehicle moves is the origin of something. Provenance: ours. [m]"""
+_READ_SHARE = 0.5
+"""Share of the numbers of a column that a form must read to be that of the column. Provenance: ours. [1]"""
+_SEMICIRCLE = math.pi / 2**31
+_FORMS: dict[str, float] = {"deg": math.radians(1.0), "deg_e7": math.radians(1e-7), "semicircles": _SEMICIRCLE}
+"""What a coordinate may be written in, to radians."""
+_PAIR_WORDS = frozenset(
+    ("pos", "position", "coord", "coords", "coordinate", "coordinates", "geom", "geometry", "loc", "location", "point", "place")
+) | {"latlon", "latlng", "lonlat"}
+"""Parts of names of columns with two numbers in one field."""
+_PAIR = r"^(POINT\s*)?[\s\[(]*[-+]?\d{1,3}\.\d+[\s,;]+[-+]?\d{1,3}\.\d+([\s,;]+[-+]?\d+(\.\d+)?)?[\s\])]*$"
+_EARTH_M = (6.3e6, 6.5e6)
+"""Distances from the Earth's centre that make three numbers a position. [m]"""
+
+
+class Form(NamedTuple):
+    """What was seen of a column, or of several that are one place, read in one way.
+
+    Attributes
+    ----------
+    n, n_read : int
+        Numbers that are there, and those that this form reads.
+    apart_m : float
+        Largest distance from the position. [m]
+    low, high : tuple of float
+        Least and largest coordinates. [rad]
+    """
+
+    n: int = 0
+    n_read: int = 0
+    apart_m: float = 0.0
+    low: tuple[float, float] = (math.inf, math.inf)
+    high: tuple[float, float] = (-math.inf, -math.inf)
+
+    def with_rows(self, lat: NDArray[np.float64], lon: NDArray[np.float64], apart_m: NDArray[np.float64], n: int) -> Form:
+        """With more rows; NaN where a form reads nothing. A place of one axis has NaN for the other."""
+        read = np.isfinite(apart_m)
+        if not read.any():
+            return self._replace(n=self.n + n)
+        span = [(values[read].min(), values[read].max()) for values in (lat, lon)]
+        low = tuple(min(before, new) for before, (new, _) in zip(self.low, span, strict=True))
+        high = tuple(max(before, new) for before, (_, new) in zip(self.high, span, strict=True))
+        far_m = max(self.apart_m, float(apart_m[read].max()))
+        return Form(self.n + n, self.n_read + int(read.sum()), far_m, (low[0], low[1]), (high[0], high[1]))
+
+    @property
+    def moved(self) -> bool:
+        """Whether the place changes."""
+        return any((high - low) * EARTH_RADIUS_M > _MOVED_M for low, high in zip(self.low, self.high, strict=True))
+
+
+class Place(NamedTuple):
+    """Columns that are another place: one of an axis, one with both, or three of Earth-fixed axes."""
+
+    names: tuple[str, ...]
+    axis: Axis | None
+    whose: tuple[str, ...]
+    inertial: bool
+
+
+def find(free: Sequence[str], declared: Iterable[str]) -> list[Place]:
+    """The other places among columns that nobody reads; none of an axis of which it is declared what counts."""
+    axes = [axis for axis in (LAT, LON) if axis not in set(declared)]
+    places = list[Place]()
+    for name in free:
+        of = other_place(name)
+        if of is not None and of.axis in axes:
+            places.append(Place((name,), of.axis, of.whose, of.inertial))
+        elif of is None and axes == [LAT, LON] and _PAIR_WORDS & set(name_parts(name)) and not is_no_vehicle(name):
+            places.append(Place((name,), None, (name,), inertial=False))
+    ecef = _ecef(free) if axes == [LAT, LON] else None
+    return places if ecef is None else [*places, Place(ecef, None, ecef, inertial=False)]
+
+
+def _ecef(free: Sequence[str]) -> tuple[str, str, str] | None:
+    """Three columns of Earth-fixed axes, or three of X, Y and Z, whose numbers decide."""
+    for named in (r"ecef_?([xyz])|([xyz])_?ecef", r"()([xyz])"):
+        found = {(match[1] or match[2]): name for name in free if (match := re.fullmatch(named, _bare(name)))}
+        if found.keys() >= {"x", "y", "z"}:
+            return found["x"], found["y"], found["z"]
+    return None
+
+
+def _bare(name: str) -> str:
+    return "_".join(part for part in name_parts(name) if part not in {"", "m"})
+
+
+class OtherPlaces:
+    """Compares other places with the position that is read, over all rows."""
+
+    def __init__(self, places: Sequence[Place]) -> None:
+        self._places = places
+        self._forms: dict[tuple[Place, str], Form] = {}
+        self._own = Form()
+
+    def see(self, part: pl.DataFrame, frame: pl.DataFrame) -> None:
+        """The next rows: those that are read, and the file's."""
+        if not self._places or not {LAT, LON} <= set(part.columns):
+            return
+        own = part.select(LAT, LON).to_numpy().astype(np.float64)
+        self._own = self._own.with_rows(own[:, 0], own[:, 1], own.sum(axis=1), len(own))
+        for place in self._places:
+            n, forms = _read(place, frame)
+            for form, there in forms:
+                apart_m = _apart_m(place, own, there)
+                before = self._forms.get((place, form), Form())
+                self._forms[place, form] = before.with_rows(there[:, 0], there[:, 1], apart_m, n)
+
+    def _nearest(self, place: Place) -> Form | None:
+        """In the form that brings it nearest, of those that read its numbers; one that reads more of them goes before."""
+        forms = [form for (of, _), form in self._forms.items() if of == place and form.n_read > _READ_SHARE * form.n]
+        return min(forms, key=lambda form: form.apart_m, default=None)
+
+    def far(self) -> Iterator[tuple[Place, float]]:
+        """Those that contradict the position, and how far away at the most; one that stays while the vehicle moves is an origin."""
+        nearest = {place: form for place in self._places if (form := self._nearest(place)) is not None}
+        for place, form in nearest.items():
+            stays = not any(other.moved for of, other in nearest.items() if of.whose == place.whose)
+            far = form.apart_m > (INERTIAL_APART_M if place.inertial else PLACES_APART_M)
+            if far and not (stays and self._own.moved):
+                yield place, form.apart_m
+
+
+def _apart_m(place: Place, own: NDArray[np.float64], there: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Distance of each row, along the axis of a place that has one."""
+    if place.axis is None:
+        way_m = east_north_m(own, there)
+        return np.asarray(np.hypot(way_m[:, 0], way_m[:, 1]))
+    other = own.copy()
+    of = (LAT, LON).index(place.axis)
+    other[:, of] = there[:, of]
+    along_m: NDArray[np.float64] = np.abs(east_north_m(own, other)[:, 1 - of])
+    return along_m
+
+
+def _read(place: Place, frame: pl.DataFrame) -> tuple[int, list[tuple[str, NDArray[np.float64]]]]:
+    """How many numbers are there, and the coordinates in each form that they may have."""
+    if len(place.names) > 1:
+        return _of_ecef(frame.select(place.names))
+    column = frame[place.names[0]]
+    if place.axis is None:
+        return _of_pairs(column)
+    return _of_axis(column, place.axis, radians="rad" in name_parts(column.name))
+
+
+def _of_axis(column: pl.Series, axis: Axis, *, radians: bool) -> tuple[int, list[tuple[str, NDArray[np.float64]]]]:
+    numbers = _angles(column) if column.dtype == pl.String else _floats(column)
+    # A receiver without a fix writes 0.
+    numbers[numbers == 0.0] = np.nan
+    forms, most = ({"rad": 1.0} if radians else _FORMS), 0.5 * np.pi if axis == LAT else 2.0 * np.pi
+    read: list[tuple[str, NDArray[np.float64]]] = []
+    for form, factor in forms.items():
+        angle = numbers * factor
+        angle[~(np.abs(angle) <= most)] = np.nan
+        there = np.zeros((len(angle), 2))
+        there[:, (LAT, LON).index(axis)] = angle
+        read.append((form, there))
+    return int(np.isfinite(numbers).sum()), read
+
+
+def _floats(column: pl.Series) -> NDArray[np.float64]:
+    if not column.dtype.is_numeric():
+        return np.full(len(column), np.nan)
+    return column.cast(pl.Float64).fill_null(math.nan).to_numpy(writable=True)
+
+
+def _angles(column: pl.Series) -> NDArray[np.float64]:
+    """Degrees of texts such as ``48.55N``, ``N 48 33.0`` or ``48°33'12"N``."""
+    text = column.str.strip_chars().str.to_uppercase()
+    text = text.set(text.str.contains(MISSING) | ~text.str.contains(r"^[NSEW+\-]?\s*\d[\d.\s°º'’′\"”″:DEGMIN_]*[NSEW]?$"), None)
+    parts = text.str.extract_all(r"\d+(?:\.\d+)?").list.eval(pl.element().cast(pl.Float64))
+    degrees = sum((parts.list.get(k, null_on_oob=True).fill_null(0.0) / 60.0**k for k in range(1, 3)), parts.list.get(0, null_on_oob=True))
+    against = text.str.contains(r"^-|[SW]$|^[SW]")
+    return pl.select(pl.when(against).then(-degrees).otherwise(degrees)).to_series().fill_null(math.nan).to_numpy(writable=True)
+
+
+def _of_pairs(column: pl.Series) -> tuple[int, list[tuple[str, NDArray[np.float64]]]]:
+    """Two numbers in one field, in either order."""
+    dtype = column.dtype
+    if isinstance(dtype, pl.List) and pl.Series(dtype=dtype.inner).dtype.is_numeric():
+        numbers = column
+    elif dtype == pl.String:
+        text = column.str.strip_chars().str.to_uppercase()
+        numbers = text.set(~text.str.contains(_PAIR), None).str.extract_all(r"[-+]?\d+(?:\.\d+)?")
+    else:
+        return 0, []
+    both = np.column_stack([numbers.list.get(k, null_on_oob=True).cast(pl.Float64).fill_null(math.nan).to_numpy() for k in (0, 1)])
+    both[(both == 0.0).all(axis=1)] = np.nan
+    read: list[tuple[str, NDArray[np.float64]]] = []
+    for form, order in (("lat, lon", [0, 1]), ("lon, lat", [1, 0])):
+        there = np.radians(both[:, order])
+        there[~((np.abs(there[:, 0]) <= 0.5 * np.pi) & (np.abs(there[:, 1]) <= 2.0 * np.pi))] = np.nan
+        read.append((form, there))
+    return column.len() - column.null_count(), read
+
+
+def _of_ecef(frame: pl.DataFrame) -> tuple[int, list[tuple[str, NDArray[np.float64]]]]:
+    from navbound import gnss  # noqa: PLC0415  (few tables have such columns)
+
+    axes = np.column_stack([_floats(frame[name].cast(pl.Float64, strict=False)) for name in frame.columns])
+    there = np.full((len(axes), 2), np.nan)
+    length_m = np.linalg.norm(axes, axis=1)
+    on_earth = (length_m > _EARTH_M[0]) & (length_m < _EARTH_M[1])
+    if on_earth.any():
+        there[on_earth] = gnss.geodetic(axes[on_earth])[:, :2]
+    return int((np.isfinite(length_m) & (length_m > 0.0)).sum()), [("ecef", there)]

@@ -1,0 +1,80 @@
+"""A speed whose column states no unit is read in the unit in which it is the speed of the positions, or contradicts them."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import pytest
+
+import navbound
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from navbound.run.directory import Run
+
+N = 400
+MPS = {"mps": 1.0, "kt": 1852 / 3600, "km/h": 1 / 3.6, "mph": 0.44704}
+
+
+def analysed(tmp_path: Path, name: str, speed: list[float], mps: list[float], *, track_deg: float | None = None, **how: object) -> Run:
+    """A flight to the north at `mps`, whose column `name` states `speed`."""
+    beside = "" if track_deg is None else ",track_true"
+    rows, lat = [f"time,lat,lon,{name}{beside}"], 48.0
+    for k, (stated, moved) in enumerate(zip(speed, mps, strict=True)):
+        value = "" if track_deg is None else f",{track_deg}"
+        rows.append(f"2026-11-22T12:{k // 60:02d}:{k % 60:02d}Z,{lat:.8f},2.5,{stated:.2f}{value}")
+        lat += moved / 111_195.0
+    (tmp_path / "a.csv").write_text("\n".join(rows) + "\n")
+    return navbound.analyze(tmp_path / "a.csv", sigma_m=5.0, out=tmp_path / "run", **how)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("unit", MPS)
+@pytest.mark.parametrize("name", ["speed", "velocity", "gnd_spd", "Speed Over Ground", "hspeed"])
+def test_the_unit_is_that_of_the_positions(tmp_path: Path, name: str, unit: str) -> None:
+    run = analysed(tmp_path, name, [120.0 / MPS[unit]] * N, [120.0] * N)
+    assert run.summary.verdict.id == "inside"
+    assert run.epochs["ground_speed_mps"].to_list() == pytest.approx([120.0] * N, rel=1e-4)
+    (words,) = [each for each in run.summary.assumptions if "states no unit" in each]
+    assert f"is read in {unit}, in which it is the speed of the positions on 40 of 40 ways" in words
+
+
+def test_a_speed_that_is_that_of_the_positions_in_no_unit_shows_nothing(tmp_path: Path) -> None:
+    """60 m/s by the positions; 90 by the column is 60 in no unit."""
+    run = analysed(tmp_path, "speed", [90.0] * N, [60.0] * N)
+    assert run.summary.verdict.id == "not_shown"
+    assert "“speed” states no unit, and is the speed of the positions in none of mps, kt, km/h, mph" in run.summary.verdict.words
+    left_out = analysed(tmp_path, "speed", [90.0] * N, [60.0] * N, columns={"ground_speed_mps": "-"})
+    assert left_out.summary.verdict.id == "inside"
+
+
+def test_positions_that_fall_behind_their_speed_are_seen(tmp_path: Path) -> None:
+    """At half of the speed for the last 150 s: 9 km behind."""
+    run = analysed(tmp_path, "speed", [120.0] * N, [120.0] * 250 + [60.0] * 150)
+    assert run.summary.verdict.id == "not_shown"
+
+
+def test_a_track_under_another_name_is_compared(tmp_path: Path) -> None:
+    assert analysed(tmp_path, "speed_mps", [120.0] * N, [120.0] * N, track_deg=0.0).summary.verdict.id == "inside"
+    aside = analysed(tmp_path, "speed_mps", [120.0] * N, [120.0] * N, track_deg=37.0)
+    assert aside.summary.verdict.id == "not_shown"
+
+
+def test_a_vehicle_that_hardly_moves_decides_nothing(tmp_path: Path) -> None:
+    run = analysed(tmp_path, "speed", [3.0] * N, [1.5] * N)
+    assert run.summary.verdict.id == "inside"
+    assert "ground_speed_mps" not in run.epochs.columns
+    assert any("columns not used: speed" in each for each in run.summary.assumptions)
+
+
+@pytest.mark.parametrize("piece_rows", [20, 77, 250])
+def test_pieces_of_any_length_decide_the_same(tmp_path: Path, piece_rows: int) -> None:
+    from navbound.read.pieces.reading import read_pieces  # noqa: PLC0415
+
+    moved = [120.0 + 10.0 * math.sin(0.02 * k) for k in range(N)]
+    whole = analysed(tmp_path, "speed", [each / MPS["kt"] for each in moved], moved)
+    reading = read_pieces(tmp_path / "a.csv", columns=None, piece_rows=piece_rows)
+    speeds = [each for piece in reading.epochs() for each in piece["ground_speed_mps"].to_list()]
+    reading.pieces.close()
+    assert speeds == whole.epochs["ground_speed_mps"].to_list()
