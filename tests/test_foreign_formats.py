@@ -87,6 +87,9 @@ LOGS = {
     "hemisphere": b"".join(hemisphere(1, junk(52)) for _ in range(LONG)),
     "gnss-logger": (ANDROID + FIXES).encode(),
     "gnss-logger, without its head": FIXES.encode(),
+    "dataflash": b"\xa3\x95\x80\x80\x59FMT\0BBnNZ\0" + junk(400),
+    "git-lfs": b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n",
+    "ais": b"!AIVDM,1,1,,A,15M67FC000G?ufbE`FepT@3n00Sa,0*5C\r\n" * 20,
     "igc": b"AXCS001\r\nHFDTE150722\r\n" + b"B1101355206343N00006198WA0058700558\r\n" * 9,
     "gpx": b'<?xml version="1.0"?>\n<gpx><trk><trkpt lat="48" lon="2"/></trk></gpx>',
 }
@@ -108,7 +111,7 @@ def test_a_foreign_log_is_refused_by_its_name(tmp_path: Path, kind: str) -> None
 
 def test_a_foreign_log_that_begins_in_a_frame_is_known_too() -> None:
     for kind, log in LOGS.items():
-        if not kind.startswith(("gnss", "igc", "gpx")):
+        if not kind.startswith(("gnss", "igc", "gpx", "dataflash", "git", "ais")):
             assert formats.of(log[17:]).id == kind.split(",")[0], kind
 
 

@@ -190,3 +190,21 @@ def test_a_refusal_names_no_more_columns_than_a_person_reads(tmp_path: Path) -> 
     names = [f"voltage{k}" for k in range(98)]
     with pytest.raises(FormatError, match="and 70 more;"):
         read(table(tmp_path, ",".join((*names, "lat", "lon")), ",".join(["{t}"] * 98 + ["47.0", "8.0"])))
+
+
+@pytest.mark.parametrize(("epu", "shown"), [("8.0", True), ("0.05", False)])
+def test_an_uncertainty_without_a_unit_may_be_in_nautical_miles(tmp_path: Path, epu: str, shown: bool) -> None:
+    """Flight displays state it in NM; as small as 0.05 it may be either."""
+    path = table(tmp_path, "time,lat,lon,EPU", f"{{t}},47.0,8.{{t}},{epu}")
+    reading = read(path)
+    words = [each for each in (*reading.notes, *reading.position_doubts) if "“EPU” states no unit and is read in metres" in each]
+    assert len(words) == 1
+    assert (words[0] in reading.notes) == shown
+    assert not any("EPU" in each for each in read(path, columns={"epu_m": "EPU:nm"}).position_doubts)
+
+
+@pytest.mark.parametrize(("beside", "named"), [("", True), (",icao24", False)])
+def test_a_height_in_feet_by_its_name_alone_is_named(tmp_path: Path, beside: str, named: bool) -> None:
+    """States of transponders have it in feet; a logger of a rocket had metres."""
+    reading = read(table(tmp_path, f"time,lat,lon,Altitude{beside}", "{t},47.0,8.{t},27.4" + (",4ca123" if beside else "")))
+    assert any("“Altitude” states no unit and is read in feet; if it is in metres, declare it" in each for each in reading.notes) == named

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 from navbound import FormatError, InputError, NavboundError
 from navbound.read import Reading, read
+from navbound.read.pieces.reading import read_pieces
 
 GPS_MINUS_UNIX_S = 315_964_800 - 18
 """Unix time of the GPS epoch, less the leap seconds of 2021 (IERS bulletin C)."""
@@ -445,3 +446,19 @@ def test_gps_times_are_read_in_every_unit_and_small_ones_are_doubted(tmp_path: P
         reading = read(path, columns={"time": f"t:{unit}"})
         assert reading.epochs["time_ns"].to_list() == [(second + k) * 10**9 for k in range(5)]
         assert any("time since some start" in note for note in reading.notes) == doubted
+
+
+def test_remarks_between_rows_are_counted(tmp_path: Path) -> None:
+    """Thirty lines of `# GPS LOST` vanished without a word."""
+    rows = [f"2026-11-22T12:00:{k:02d}Z,{49 + k * 1e-4:.5f},2.5" + ("\n# GPS LOST" if k % 2 else "") for k in range(60)]
+    text = "\n".join(["# what it is", "time,lat,lon", *rows]) + "\n"
+    (tmp_path / "a.csv").write_text(text)
+    reading = read(tmp_path / "a.csv")
+    (rejection,) = reading.rejected
+    assert (rejection.reason, rejection.count, rejection.first_line) == ("a line that begins with #, which is a remark", 30, 5)
+    assert rejection.example == "# GPS LOST"
+    assert len(reading.epochs) == 60
+    pieces = read_pieces(tmp_path / "a.csv", piece_rows=20)
+    assert sum(piece.height for piece in pieces.epochs()) == 60
+    assert [(each.count, each.first_line) for each in pieces.rejected] == [(30, 5)]
+    pieces.pieces.close()

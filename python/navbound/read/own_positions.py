@@ -46,7 +46,7 @@ OWN = _words(
 
 OF_POSITION = _words(
     "position_source pos_source position_src pos_src position_source_type position_source_id position_source_name position_origin "
-    "pos_origin location_source fix_source position_method positioning_method positioning_source positioning_type"
+    "pos_origin source_of_position location_source fix_source position_method positioning_method positioning_source positioning_type"
 )
 """Columns that say nothing but how the position came: a word that nobody knows is none of the aircraft's own."""
 OPENSKY_FOREIGN, OPENSKY_OWN = _words("1 2"), _words("0 3")
@@ -55,7 +55,7 @@ OPENSKY_FOREIGN, OPENSKY_OWN = _words("1 2"), _words("0 3")
 OF_ANYTHING = _words("type source source_type src data_source track_source surveillance_source surveillance_type")
 """Columns that may say that, or what kind of aircraft, of message or of receiver: a word that is not known is named."""
 
-OF_NAVIGATION = _words("nav_source navigation_source nav_src navigation_sensor nav_sensor")
+OF_NAVIGATION = _words("nav_source navigation_source nav_src navigation_sensor nav_sensor gps_source gnss_source")
 """Columns that say what keeps the position."""
 INERTIAL = _words("irs ins iru inertial imu irs_only ins_only inertial_only dr")
 """Words in them of inertial sensors alone."""

@@ -27,8 +27,9 @@ export function kpiVerdict(host: HTMLElement, payload: Payload, record: Performa
     const mark = svg("svg", { viewBox: "0 0 24 24", width: 26, height: 26, "aria-hidden": "true" }, svg("path", { d: STATES[tone].mark }));
     // A level that no integrity rests on, or of which too little was seen, earns no green.
     const { id } = payload.summary.verdict;
-    const shown = id === "not_believable" ? "warning" : tone === "inside" && (record.experimental !== "" || id === "not_shown") ? "unknown" : tone;
-    const withdrawn = id === "not_believable" ? "Not believable" : id === "nothing_judged" ? "Nothing judged" : id === "not_shown" ? "Not shown" : null;
+    const qualified = record.experimental !== "" || id === "not_shown" ? "unknown" : id === "outside" ? "caution" : tone;
+    const shown = id === "not_believable" ? "warning" : tone === "inside" ? qualified : tone;
+    const withdrawn = { not_believable: "Not believable", nothing_judged: "Nothing judged", not_shown: "Not shown", outside: "Not always available", inside: null }[id];
     // The panel itself has the colour.
     const words = headline(record);
     words.className = "words";

@@ -81,6 +81,17 @@ pub(super) fn igc(file: &File<'_>) -> bool {
     maker && begin.split(|byte| *byte == b'\n').any(|line| line.starts_with(b"HFDTE"))
 }
 
+/// Sentences of ships, behind the block that some receivers write before each; such a log may hold sentences of a position too, which count.
+pub(super) fn ais(file: &File<'_>) -> bool {
+    let begin = file.content.get(..file.content.len().min(1 << 13)).unwrap_or_default();
+    let sentence = |line: &[u8]| {
+        memchr::memchr(b'!', line).and_then(|at| line.get(at..at + 6)).is_some_and(|six| six == b"!AIVDM" || six == b"!AIVDO")
+    };
+    let lines: Vec<&[u8]> =
+        begin.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii).filter(|line| !line.is_empty()).take(FRAMES).collect();
+    !lines.is_empty() && lines.into_iter().all(|line| (line.starts_with(b"!") || line.starts_with(b"\\")) && sentence(line))
+}
+
 pub(super) fn gpx(file: &File<'_>) -> bool {
     element(file, b"<gpx")
 }

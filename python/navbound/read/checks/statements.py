@@ -124,12 +124,13 @@ AGE = _age(
     _AGES
     | {f"{name}_{unit}" for name in _AGES for unit in _SECONDS}
     | {f"age_{unit}" for unit in _SECONDS}
+    | {f"last_update_{unit}" for unit in _SECONDS}
     | _words("seconds_since_update seconds_since_last_update seconds_since_fix seconds_since_last_fix"),
     1.0,
 )
 """The age of a position, in seconds; it dates the position, too. One that is of the future is of another clock."""
 
-AGE_MS = _age(frozenset(f"{name}_{unit}" for name in (*_AGES, "age") for unit in _MILLISECONDS), 1e3)
+AGE_MS = _age(frozenset(f"{name}_{unit}" for name in (*_AGES, "age", "last_update") for unit in _MILLISECONDS), 1e3)
 """The same in milliseconds."""
 
 AGES = ((AGE, 1.0), (AGE_MS, 1e-3))
@@ -152,6 +153,9 @@ READSB_TYPE = Kind(
 )
 """The `type` of readsb's aircraft, by the rule of its live lines."""
 
+_SSM = _words("gps gnss nav pos position lat lon latitude longitude")
+"""Whose sign and status matrix a column is."""
+
 _LEAST = 1e-9
 """A number above nothing. [1]"""
 
@@ -162,7 +166,7 @@ KINDS: tuple[Kind, ...] = (
             "valid is_valid validity position_valid pos_valid gps_valid gnss_valid fix_valid data_valid nav_valid solution_valid "
             "location_valid usable reliable trusted healthy gps_ok gnss_ok position_ok pos_ok nav_ok integrity_ok raim_ok "
             "fix_ok gnss_fix_ok used use in_use accepted believed "
-            "good is_good pos_good position_good gps_good ok is_ok "
+            "good is_good pos_good position_good gps_good ok is_ok crc_ok checksum_ok parity_ok "
             "gnssfixok available is_available gps_available gnss_available raim_available integrity_available pl_valid hpl_valid xpl_valid"
         ),
         _NO,
@@ -181,7 +185,7 @@ KINDS: tuple[Kind, ...] = (
     # ARINC 429. As numbers the codes of binary and of decimal words differ.
     Kind(
         "invalid",
-        _words("ssm sign_status_matrix pos_ssm position_ssm lat_ssm lon_ssm latitude_ssm longitude_ssm ssm_lat ssm_lon"),
+        _words("ssm sign_status_matrix") | {f"{whose}_ssm" for whose in _SSM} | {f"ssm_{axis}" for axis in ("lat", "lon")},
         _words("ncd fw ft no_computed_data failure_warning functional_test"),
         _words("no normal normal_operation"),
         other_against=True,
@@ -196,7 +200,7 @@ KINDS: tuple[Kind, ...] = (
     ),
     Kind(
         "invalid",
-        _words("q qual quality solution_quality pos_quality position_quality nav_quality gnss_quality"),
+        _words("q qual quality quality_flag solution_quality pos_quality position_quality nav_quality gnss_quality"),
         _NO_FIX | _words("bad poor unusable unreliable degraded unavailable"),
         _FIX | _words("1 good ok"),
     ),
@@ -287,11 +291,16 @@ KINDS: tuple[Kind, ...] = (
     # readsb: when GPS still worked well, shown for 15 minutes after it was lost or heavily degraded.
     Kind("alert", _words("gps_ok_before"), frozenset(), frozenset(), other_against=True),
     # 0 where no integrity is known or a probability of 1e-3 is exceeded; what the other levels say nothing here reads.
-    Kind("alert", _words("sil source_integrity_level surveillance_integrity_level"), _words("0 unknown"), _words("1 2 3")),
+    Kind(
+        "alert",
+        _words("sil source_integrity_level surveillance_integrity_level sda system_design_assurance"),
+        _words("0 unknown"),
+        _words("1 2 3"),
+    ),
     # The least of a scale is none, whatever the scale; the others are named.
     Kind(
         "alert",
-        _words("trust trust_level confidence confidence_level"),
+        _words("trust trust_level confidence confidence_level confidence_pct confidence_percent"),
         _words("0 none no low very_low poor false untrusted unreliable"),
         _words("high very_high full true yes"),
         below=_LEAST,
@@ -315,7 +324,9 @@ KINDS: tuple[Kind, ...] = (
             "raim_flag unhealthy unsafe rejected bad frozen stale stuck mock mocked is_mock mock_location is_mocked from_mock_provider "
             "unable_req_nav_perf unable_required_navigation_performance unable_nav_perf anp_alert faulty suspicious fail failed "
             "mi sim simulator reverted reversion nav_accuracy_downgraded navaccuracydowngrad "
-            "is_from_mock_provider simulated_location untrusted fake ghost false_target bad_position bad_pos bad_fix excluded masked "
+            "is_from_mock_provider simulated_location untrusted fake ghost false_target bad_position bad_pos bad_fix "
+            "exclude excluded masked "
+            "flag_bad bad_flag bit_fail bit_fault bite_fail bite_fault "
             "discarded discard flagged dnu rnp_unable unable map_shift gps_primary_lost loss_of_gps loss_of_gnss not_to_be_used"
         )
         | _ALARM_FLAGS,
@@ -579,7 +590,8 @@ def stated(kind: Kind, raw: pl.Series) -> Stated:
 _ALARM = (
     r"\b(unable|unreliable|invalid|lost|fail|fails|failed|failure|fault|faulty|alarm|alert|warning|misleading|spoof|spoofed|spoofing|jam|jammed|jamming|"
     r"degraded|unhealthy|unsafe|downgrade|downgraded|unavail|unavailable|disagree|inop|loss|doubtful|dead reckoning|outage|exceeded|"
-    r"accur low|accuracy low|low accuracy|"
+    r"accur low|accuracy low|low accuracy|accur downgrad|map shift|(?:pos|position) uncertain|verify pos(?:ition)?|"
+    r"verloren|ungueltig|ungültig|gestoert|gestört|perte|perdue?|invalide|brouillage|perdid[ao]|inválid[ao]|sin señal|"
     r"mlat\d*|multilat\w*|tis b|tisb|irs only|irs nav only|ins only|inertial only|disconnected|extrapolated|simulated data|"
     r"simulated position)\b"
 )

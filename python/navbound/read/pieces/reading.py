@@ -195,6 +195,7 @@ class _OfText(_FirstPass):
         self._chunks = Chunks(path, min(CHUNK_BYTES, 64 * _SAMPLES * stride))
         self._layout: Layout | None = None
         self._bad: tuple[str, int, int, str] | None = None
+        self._remarks: tuple[str, int, int, str] | None = None
 
     @property
     def source(self) -> Source:
@@ -208,6 +209,10 @@ class _OfText(_FirstPass):
         if lines.is_empty():
             return
         if self._layout is None:
+            rows_begin = ~lines["text"].str.starts_with("#")
+            if not rows_begin.any():
+                return
+            lines = lines[int(rows_begin.arg_max() or 0) :]
             self._layout = layout_of(self.path, lines)
             self.named(self._layout.columns, rows_of(self.path, self._layout, lines[1:]).frame)
             with self.path.open("rb") as file:
@@ -217,8 +222,9 @@ class _OfText(_FirstPass):
         self.n_rows += rows.n_rows
         if rows.bad is not None:
             self.n_unread += rows.bad[1]
-            before = self._bad or (rows.bad[0], 0, *rows.bad[2:])
-            self._bad = (before[0], before[1] + rows.bad[1], *before[2:])
+            self._bad = _together(self._bad, rows.bad)
+        if rows.remarks is not None:
+            self._remarks = _together(self._remarks, rows.remarks)
         self.keep(rows.frame)
 
     def checked(self) -> None:
@@ -226,7 +232,14 @@ class _OfText(_FirstPass):
             raise FormatError(self.path, "nothing but comments")
         if self.n_rows and self._bad is not None:
             self.rejections.add(*self._bad)
+        if self.n_rows and self._remarks is not None:
+            self.rejections.add(*self._remarks, malformed=False)
         super().checked()
+
+
+def _together(before: tuple[str, int, int, str] | None, more: tuple[str, int, int, str]) -> tuple[str, int, int, str]:
+    reason, count, line, text = before or (more[0], 0, *more[2:])
+    return reason, count + more[1], line, text
 
 
 class _OfParquet(_FirstPass):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import polars as pl
@@ -72,3 +73,9 @@ def largest(values: pl.Series) -> float:
     """The largest size of the values; 0 where there is none."""
     size = values.abs().max()
     return float(size) if isinstance(size, (int, float)) else 0.0
+
+
+def smallest(values: pl.Series) -> float:
+    """The smallest number above 0; infinite where there is none."""
+    least = values.filter(values > 0.0).min()
+    return float(least) if isinstance(least, (int, float)) else math.inf

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError, InputError
+from navbound.read.beside.places import Place, find
 from navbound.read.checks.statements import (
     NUC,
     READSB_TYPE,
@@ -37,7 +38,6 @@ from navbound.read.quantities import (
     WRITTEN,
     Quantity,
 )
-from navbound.read.tables.other_places import Place, find
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Mapping, Sequence
@@ -281,6 +281,15 @@ def is_header(cells: Sequence[object]) -> bool:
 
 _LEAST_NAMES = 2
 """Names of quantities in one row that make it a header: one may be a callsign. [1]"""
+
+
+_OF_TRANSPONDER = TRANSPONDER | READSB | {"callsign", "flight", "icao", "icao24", "hexident", "groundspeed", "vertrate", "baro_rate"}
+
+
+def is_transponder(mapping: Assignment) -> bool:
+    """Whether the names of a table are those of states of transponders, whose heights are in feet."""
+    read = (column.name for column in mapping.columns.values())
+    return not _OF_TRANSPONDER.isdisjoint(_plain(name)[0] for name in (*read, *mapping.unused, *(name for name, _ in mapping.statements)))
 
 
 def position_time(unused: list[str]) -> Column | None:

@@ -92,6 +92,8 @@ def _csv(source: Source) -> Table:
     rejections = Rejections(source.path)
     if rows.bad is not None:
         rejections.add(*rows.bad)
+    if rows.remarks is not None:
+        rejections.add(*rows.remarks, malformed=False)
     return Table(rows.frame, rejections, rows.n_rows)
 
 
@@ -126,21 +128,27 @@ class Layout:
 
 @dataclass(frozen=True)
 class Rows:
-    """Some rows of a text table: those of as many fields as the header, and of the others reason, count, line and text of the first."""
+    """Some rows of a text table: those of as many fields as the header.
+
+    Of the others, and of remarks between them, it has reason, count, line and text of the first.
+    """
 
     frame: pl.DataFrame
     n_rows: int
     bad: tuple[str, int, int, str] | None
+    remarks: tuple[str, int, int, str] | None = None
 
 
 def lines_of(text: str, first_line: int) -> pl.DataFrame:
-    """Lines that are neither empty nor remarks, with their numbers; `first_line` is that of the first."""
+    """Lines that are not empty, with their numbers, from the first that is no remark on; `first_line` is that of the first."""
     lines = pl.DataFrame({"text": text.split("\n")}, schema={"text": pl.String}).with_columns(pl.col("text").str.strip_chars_end("\r"))
     lines = lines.with_columns(pl.int_range(first_line, first_line + pl.len()).alias(LINE))
     lines = lines.filter(pl.col("text").str.strip_chars() != "")
-    remark = pl.col("text").str.starts_with("#")
-    rest = lines.filter(~remark)
-    if first_line > 1 or rest.is_empty():
+    remark = lines["text"].str.starts_with("#")
+    if first_line > 1:
+        return lines
+    rest = lines[int((~remark).arg_max() or 0) :] if not remark.all() else lines.clear()
+    if rest.is_empty():
         return rest
     before = lines.filter(pl.col(LINE) < rest[LINE][0]).tail(1).with_columns(pl.col("text").str.strip_chars_start("# \t"))
     return pl.concat([before, rest]) if not before.is_empty() and _names_of(before["text"][0], rest["text"][0]) else rest
@@ -230,6 +238,7 @@ def rows_of(path: Path, layout: Layout, lines: pl.DataFrame) -> Rows:
     FormatError
         Lines that do not make as many rows.
     """
+    remarks, lines = lines.filter(pl.col("text").str.starts_with("#")), lines.filter(~pl.col("text").str.starts_with("#"))
     # Separators within quotation marks do not count; a quotation mark that is left over opens a field that does not end.
     bare = pl.col("text").str.replace_all(r'"[^"]*"', "")
     _require_line_ends(path, lines, bare)
@@ -257,7 +266,12 @@ def rows_of(path: Path, layout: Layout, lines: pl.DataFrame) -> Rows:
         raise FormatError(path, f"not a table: {good.height} lines make {frame.height} rows")
     named = {str(i): name for i, name in enumerate(layout.names) if name}
     frame = _split(frame.select(named.keys()).rename(named), layout.pair)
-    return Rows(frame.with_columns(good[LINE]), counted.height, refused)
+    of_remarks = None if remarks.is_empty() else (_REMARK, remarks.height, int(remarks[LINE][0]), str(remarks["text"][0]))
+    return Rows(frame.with_columns(good[LINE]), counted.height, refused, of_remarks)
+
+
+_REMARK = "a line that begins with #, which is a remark"
+"""What is counted of a line between rows that may say something of them."""
 
 
 def _require_line_ends(path: Path, lines: pl.DataFrame, text: pl.Expr) -> None:

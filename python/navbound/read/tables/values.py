@@ -10,16 +10,16 @@ import polars as pl
 from navbound import status
 from navbound.errors import UNSEEN, FormatError
 from navbound.read import own_positions
+from navbound.read.beside.further import Further, Speeds
+from navbound.read.beside.speed_unit import SpeedUnit
 from navbound.read.checks import levels, stated, statements
 from navbound.read.checks.places import NO_PLACE, Nowhere
 from navbound.read.checks.rejections import Kind, Tally
 from navbound.read.checks.repeats import Repeats, left_out, separate
 from navbound.read.quantities import POSITION_TIME, QUANTITY, UNITS
-from navbound.read.tables.cells import MISSING, largest, no_field, numbers, on_ground, words_of_ground
-from navbound.read.tables.columns import POSITION, Assignment, Column, declare, is_header, position_time
-from navbound.read.tables.further import Further, Speeds
+from navbound.read.tables.cells import MISSING, largest, no_field, numbers, on_ground, smallest, words_of_ground
+from navbound.read.tables.columns import POSITION, Assignment, Column, declare, is_header, is_transponder, position_time
 from navbound.read.tables.names import Callsigns, one_writing
-from navbound.read.tables.speed_unit import SpeedUnit
 from navbound.read.tables.stated_units import is_row_of_units, require_same
 from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, understand, units
@@ -45,6 +45,9 @@ FIELDS, OPTIONAL, DATED, REQUIRED, REPEATED, LEVELS, COMPARED = range(0, 700_000
 
 _HIGH_M, _LIKE = 300.0, 0.1
 """Height from which geoid and pressure hardly change a ratio [m], and how much they may [1]. Provenance: ours."""
+
+_LEAST_EPU_M = 1.0
+"""A smaller radius that holds 95 % is one of a phase solution in metres, or one in nautical miles. Provenance: ours. [m]"""
 
 _SHOWN = 20
 """Rows that show whether a column holds words: as many as the shortest piece of a file has. Provenance: ours."""
@@ -98,6 +101,7 @@ class Values:
         self._n_ground: dict[str, int] = {}
         self._n_dated = self._n_undated = 0
         self._n_heights = self._n_feet = self._n_metres = 0
+        self._transponder, self._least_epu_m = is_transponder(mapping), math.inf
 
     def take(self, frame: pl.DataFrame) -> pl.DataFrame:
         """Columns in SI of some rows, with their times as they are written and the reasons against them.
@@ -142,6 +146,8 @@ class Values:
             if name in part.columns:
                 self._largest[name] = max(self._largest[name], largest(part[name]))
         self._see_heights(part)
+        if "epu_m" in part.columns:
+            self._least_epu_m = min(self._least_epu_m, smallest(part["epu_m"]))
         if set(POSITION) <= set(self._required):
             self._nowhere.see(part)
         if tuple(self._required) == POSITION:
@@ -249,6 +255,26 @@ class Values:
         self._n_feet += high.filter((ratio / feet - 1.0).abs() <= _LIKE).height
         self._n_metres += high.filter((ratio * feet - 1.0).abs() <= _LIKE).height
 
+    def _units_of_names(self) -> None:
+        """Units that are those of a name and that nobody states: a height of ADS-B is in feet, an uncertainty of a flight display in NM."""
+        columns = self._mapping.columns
+        for name in ("est_h_m", "altitude_m"):
+            column = columns.get(name)
+            if column is not None and column.unit == "ft" and not column.unit_stated and not self._transponder:
+                how = declare(f"{name}={column.name}:m")
+                self.notes.append(f"{self._path.name}: “{column.name}” states no unit and is read in feet; if it is in metres, {how}")
+        column = columns.get("epu_m")
+        if column is None or column.unit != "m" or column.unit_stated:
+            return
+        words = f"{self._path.name}: “{column.name}” states no unit and is read in metres"
+        how = declare(f"epu_m={column.name}:nm")
+        if self._least_epu_m >= _LEAST_EPU_M:
+            self.notes.append(f"{words}; if it is in nautical miles, {how}")
+        else:
+            self.position_doubts.append(
+                f"{words}; as small as it is it may be in nautical miles: {how}, or :m; nothing is shown until then"
+            )
+
     def _look_like_feet(self) -> None:
         columns = self._mapping.columns
         for n, name, other in ((self._n_feet, "est_h_m", "altitude_m"), (self._n_metres, "altitude_m", "est_h_m")):
@@ -308,6 +334,7 @@ class Values:
         self.notes += [f"{name}: {words_of_ground(column, n)}" for column, n in self._n_ground.items() if n]
         self._look_like_radians()
         self._look_like_feet()
+        self._units_of_names()
         self.position_doubts += self._further.doubts()
         self._unit = self._understood(self._mapping.times, self._facts)
         if self._dated is not None:

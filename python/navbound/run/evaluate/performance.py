@@ -293,7 +293,7 @@ def _summary(result: Performance, parts: list[Stored], honesty: CovarianceConsis
         inside=None,
         words=" ".join(
             [
-                *levels_verdict(decided),
+                *levels_verdict(decided, result),
                 *([COPIED] if is_copied else []),
                 *(f"{doubt}." for doubt in doubts),
                 *beside_words(n_worse, unread),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from navbound.gnss.monitor_fit import DISBELIEF
+from navbound.records.verdict import LEAST_SHARE
 from navbound.run.verdict.numbers import length, share
 
 if TYPE_CHECKING:
@@ -12,12 +13,15 @@ if TYPE_CHECKING:
     from navbound.records.verdict import VerdictId
 
 
-def levels_verdict(verdict: VerdictId) -> list[str]:
-    """The sentence that withdraws the numbers after it; nothing where they may be used."""
+def levels_verdict(verdict: VerdictId, result: Performance) -> list[str]:
+    """The sentence that withdraws the numbers after it, or says before them what is not fulfilled; nothing where all is."""
     if verdict == "not_believable":
         return ["Not believable: errors exceed the protection level more often than its integrity risk allows."]
     if verdict == "nothing_judged":
         return ["Nothing judged: no epoch has a protection level."]
+    if verdict == "outside":
+        below = [each.level.id for each in result.levels if each.availability_expected < LEAST_SHARE]
+        return [f"Not always available: {', '.join(below)} at less than {share(LEAST_SHARE)} of the expected epochs."] if below else []
     return []
 
 

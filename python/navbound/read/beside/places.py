@@ -105,9 +105,9 @@ def find(free: Sequence[str], declared: Iterable[str]) -> list[Place]:
 def _ecef(free: Sequence[str]) -> tuple[str, str, str] | None:
     """Three columns of Earth-fixed axes, or three of X, Y and Z, whose numbers decide."""
     for named in (r"ecef_?([xyz])|([xyz])_?ecef", r"()([xyz])"):
-        found = {(match[1] or match[2]): name for name in free if (match := re.fullmatch(named, _bare(name)))}
-        if found.keys() >= {"x", "y", "z"}:
-            return found["x"], found["y"], found["z"]
+        axes = {(match[1] or match[2]): name for name in free if (match := re.fullmatch(named, _bare(name)))}
+        if axes.keys() >= {"x", "y", "z"}:
+            return axes["x"], axes["y"], axes["z"]
     return None
 
 

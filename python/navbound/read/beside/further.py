@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from navbound.errors import FormatError
+from navbound.read.beside.places import OtherPlaces
 from navbound.read.checks.plausible import Limits
 from navbound.read.checks.statements import STALE_AFTER_S
 from navbound.read.tables.cells import largest, no_field, numbers
 from navbound.read.tables.columns import NO_COLUMN, POSITION, declare
-from navbound.read.tables.other_places import OtherPlaces
 from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, understand
 from navbound.units import EARTH_RADIUS_M
