@@ -68,6 +68,22 @@ def test_what_is_not_judged_is_a_line_of_its_own() -> None:
     assert [(s.properties["state"], len(s.places)) for s in made] == [("normal", 3), ("not judged", 3)]
 
 
+def test_nothing_joins_epochs_between_which_nothing_is_known() -> None:
+    """A line went on through 35 losses of monitoring, the longest of 69 s."""
+    second = [0, 1, 2, 3, 30, 60, 61, 62, 90]
+    epochs = pl.DataFrame(
+        {
+            "track": ["a"] * len(second),
+            "time_ns": [1_400_000_000_000_000_000 + k * 1_000_000_000 for k in second],
+            "est_lat_rad": [0.8 + 1e-5 * k for k in second],
+            "est_lon_rad": [0.1] * len(second),
+        }
+    )
+    made = write.shapes(epochs)
+    assert [(each.kind, len(each.places)) for each in made] == [("LineString", 4), ("Point", 1), ("LineString", 3), ("Point", 1)]
+    assert sum(len(each.places) for each in made) == len(second)
+
+
 def test_a_track_across_the_date_line_is_cut_on_it(tmp_path: Path) -> None:
     lon = np.radians([179.0, 179.6, -179.8, -179.0])
     epochs = pl.DataFrame(

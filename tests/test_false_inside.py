@@ -14,12 +14,12 @@ import navbound
 from navbound import FormatError, InputError, gnss, ins, rnp, status
 from navbound.read import read
 from navbound.read.source import load
+from navbound.rnp import usual
 from navbound.run import analyze
 from navbound.run.directory import Run
 from navbound.run.inputs import solved
 from navbound.run.inputs.solving import Solving
 from navbound.run.judge import judge
-from navbound.run.summary import usual
 from navbound.run.summary.missing import Gaps
 
 N = 600

@@ -23,6 +23,7 @@ from navbound.read.truth import TOLERANCE_S, truth_of, with_error, with_truth
 from navbound.records.material import Material, Operation
 from navbound.records.run import CovarianceOrigin, Rejection
 from navbound.records.truth import TruthDoubts
+from navbound.rnp.usual import period_s
 from navbound.run.inputs.doubts import of_motion
 from navbound.run.inputs.files import sort_out
 from navbound.run.inputs.solving import Solving
@@ -36,7 +37,6 @@ from navbound.run.pieces import (
     in_pieces,
     is_large,
 )
-from navbound.run.summary.usual import period_s
 from navbound.table.arguments import checked
 from navbound.table.columns import HEARD
 from navbound.table.declare import schema

@@ -15,6 +15,7 @@ import numpy as np
 import polars as pl
 
 from navbound.errors import FormatError, InputError
+from navbound.rnp.usual import period_s, stale_after_s
 from navbound.status import USABLE
 from navbound.table.arguments import checked
 from navbound.table.columns import HORIZONTAL
@@ -65,7 +66,8 @@ def shapes(
 ) -> list[Shape]:
     """Everything of a run that has a place.
 
-    Lines are cut where the state of the monitor changes, and at the date line. Epochs without a position are in no line.
+    Lines are cut where the state of the monitor changes, where nothing is known between two epochs, and at the date line. Epochs without a
+    position are in no line.
 
     Parameters
     ----------
@@ -185,19 +187,26 @@ def _states(epochs: pl.DataFrame) -> pl.Series:
 
 
 def _lines(epochs: pl.DataFrame, names: tuple[str, str], states: pl.Series, properties: dict[str, Any]) -> Iterator[Shape]:
-    """One line a run of epochs with one state, joined to the next, and cut at the date line."""
+    """One line a run of epochs with one state, joined to the next, and cut at the date line.
+
+    Nothing joins epochs between which nothing is known; one between two such gaps is a point.
+    """
     if epochs.height < 2:
         return
     lon, lat = (epochs[name].to_list() for name in names)
     heights = epochs["est_h_m"].to_list() if names[0].startswith("est") and "est_h_m" in epochs.columns else [None] * epochs.height
     times, known = epochs["time_ns"].to_list(), states.to_list()
+    steps_ns = np.diff(epochs["time_ns"].to_numpy())
+    gaps = {int(k) + 1 for k in np.flatnonzero(steps_ns > 1e9 * stale_after_s(period_s(steps_ns.copy())))}
     begin = 0
     for k in range(1, len(known) + 1):
-        if k < len(known) and known[k] == known[begin]:
+        if k < len(known) and known[k] == known[begin] and k not in gaps:
             continue
-        last = min(k, len(known) - 1)
+        last = k - 1 if k in gaps else min(k, len(known) - 1)
         places = [_place(lon[i], lat[i], heights[i]) for i in range(begin, last + 1)]
         more = {"state": known[begin], "from_utc": utc_text(times[begin]), "until_utc": utc_text(times[last])}
+        if len(places) == 1 and begin in gaps | {0}:
+            yield Shape("Point", places, properties | more)
         for piece in _cut(places):
             yield Shape("LineString", piece, properties | more)
         begin = k

@@ -18,9 +18,9 @@ from navbound.read.pieces import Frames, PiecedReading, read_pieces
 from navbound.read.pieces.parquet import is_parquet, shape
 from navbound.read.quantities import POSITION_TIME
 from navbound.read.source import LARGE_BYTES, is_text_table
+from navbound.rnp.usual import period_s
 from navbound.run.inputs.doubts import of_motion
 from navbound.run.pieces.flights import Flights
-from navbound.run.summary.usual import period_s
 from navbound.storage.tables import whole_tracks
 from navbound.table.columns import COVARIANCE, HORIZONTAL, VARIANCES
 

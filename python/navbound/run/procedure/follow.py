@@ -20,8 +20,8 @@ from navbound.read.checks.repeats import left_out
 from navbound.records.material import LEFT_OUT
 from navbound.records.procedure import BesideProcedure
 from navbound.records.run import Waypoint
-from navbound.rnp import Monitor
 from navbound.rnp.exposure import LONGEST_STEP_S
+from navbound.rnp.usual import stale_after_s
 from navbound.run.procedure.answers import flown_record
 from navbound.run.procedure.heights import height_results, heights, setting_result
 from navbound.time import utc_text
@@ -171,8 +171,7 @@ def _period_s(time_s: NDArray[np.float64]) -> float:
 
 def _not_flown(track: str, end_ns: int, each: Stretch, period_s: float) -> pl.DataFrame:
     """The end of the procedure as an epoch that is expected, where it was due later than a gap may last that is none."""
-    stale_s = Monitor(sample_period_s=min(period_s, LONGEST_STEP_S), time_to_alert_s=math.inf).stale_after_s
-    return pl.DataFrame([{"track": track, "time_ns": end_ns}] if each.due_s > stale_s else [], schema=LEFT_OUT)
+    return pl.DataFrame([{"track": track, "time_ns": end_ns}] if each.due_s > stale_after_s(period_s) else [], schema=LEFT_OUT)
 
 
 def _part(followed: Followed, rows: slice) -> Followed:

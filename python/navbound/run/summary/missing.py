@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 
 import polars as pl
 
-from navbound import rnp
-from navbound.rnp.exposure import LONGEST_STEP_S
-from navbound.run.summary.usual import absent_in, usual_ms
+from navbound.rnp.usual import absent_in, stale_after_s, usual_ms
 
 
 class Gaps:
@@ -24,7 +21,7 @@ class Gaps:
         self._n, self._short_ms = 0, Counter[int]()
         self._rest = left_out.drop_nulls("time_ns").unique().sort("track", "time_ns")
         self._last = self._rest.clear()
-        self._longest_s = rnp.Monitor(sample_period_s=min(period_s, LONGEST_STEP_S), time_to_alert_s=math.inf).stale_after_s
+        self._longest_s = stale_after_s(period_s)
 
     def see(self, epochs: pl.DataFrame) -> None:
         """The next epochs."""

@@ -38,3 +38,18 @@ def epochs(count: int) -> str:
 def level(risk: float) -> str:
     """A probability level: 0.05 is 95 %, 1e-5 is 99.999 %."""
     return f"{100 * (1 - risk):.10g} %"
+
+
+def independent(n_effective: float) -> str:
+    """A number of independent epochs: whole from ten on."""
+    return f"{n_effective:.0f}" if n_effective >= _WHOLE else f"{n_effective:.2g}"
+
+
+_WHOLE = 10.0
+
+
+def duration(seconds: float) -> str:
+    """Seconds up to two hours, hours up to two days, then days."""
+    if seconds < 2 * 3600.0:
+        return f"{seconds:.6g} s"
+    return f"{seconds / 3600.0:.3g} hours" if seconds < 2 * 86400.0 else f"{seconds / 86400.0:.4g} days"

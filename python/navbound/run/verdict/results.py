@@ -9,7 +9,7 @@ import numpy as np
 from navbound import _core
 from navbound.read.checks.statements import speaks_of_accuracy, speaks_of_level
 from navbound.read.tables.columns import declare
-from navbound.run.verdict.numbers import epochs, length, level, share
+from navbound.run.verdict.numbers import duration, epochs, length, level, share
 from navbound.run.verdict.procedure import beside_procedure_words, incomplete_words
 from navbound.run.verdict.rule import FEW_EPOCHS, has_approaches
 from navbound.run.verdict.words import COPIED, contradicted_words, covered_words, refuted_words, short_words, truth_words
@@ -57,7 +57,7 @@ def verdict_words(
     if verdict.n_long_steps and verdict.longest_step_s is not None:
         parts.append(
             f"Between epochs nothing is known: {verdict.n_long_steps} steps are longer than a position takes to become stale, "
-            f"the longest {verdict.longest_step_s:.6g} s."
+            f"the longest {duration(verdict.longest_step_s)}."
         )
     parts += unread_words(verdict.unread)
     judged_by = f"Judged by {judged.title} ({judged.id}, {judged.provenance})."
@@ -137,7 +137,7 @@ def _thin(verdict: Verdict) -> str:
     """That a verdict rests on fewer epochs than may be called evidence."""
     if not 0 < verdict.n_judged < FEW_EPOCHS:
         return ""
-    step = "" if verdict.longest_step_s is None else f", up to {verdict.longest_step_s:.6g} s apart"
+    step = "" if verdict.longest_step_s is None else f", up to {duration(verdict.longest_step_s)} apart"
     return f"; this is thin evidence, of only {verdict.n_judged} judged epoch{'' if verdict.n_judged == 1 else 's'}{step}"
 
 

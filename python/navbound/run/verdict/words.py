@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from navbound.methods import method
 from navbound.records.verdict import LEAST_SHARE
 from navbound.run.verdict.belief import is_excluded_vertical
-from navbound.run.verdict.numbers import in_metres, level, share
+from navbound.run.verdict.numbers import in_metres, independent, level, share
 from navbound.run.verdict.rule import FEW_EPOCHS, SQUARE_OF_TRUE, TOO_SMALL
 
 if TYPE_CHECKING:
@@ -134,7 +134,7 @@ def _few(belief: Belief) -> list[str]:
         return []
     return [
         f"These data do not contradict the bounds, and do not support them either: at least {FEW_EPOCHS:g} independent epochs are needed, "
-        f"and these are worth {belief.n_effective:.2g}."
+        f"and these are worth {independent(belief.n_effective)}."
     ]
 
 
@@ -150,7 +150,7 @@ def _contained(bounds: list[BoundCheck]) -> list[str]:
     whole = [check for check in bounds if check.n_outside == 0 and check.risk < WHOLE_BELOW]
     one = [f"{_figures(check)} are within the {_bound(check)}" for check in bounds if check not in whole]
     n_effective = min((check.n_effective for check in bounds), default=0.0)
-    parts = [f"{' and '.join(one)} (95 % intervals as from {n_effective:.2g} independent epochs)"] if one else []
+    parts = [f"{' and '.join(one)} (95 % intervals as from {independent(n_effective)} independent epochs)"] if one else []
     return parts + ([f"none is beyond the {' or the '.join(_bound(check) for check in whole)}"] if whole else [])
 
 

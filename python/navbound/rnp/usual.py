@@ -1,11 +1,14 @@
-"""The usual step of recorded epochs, where some of them are absent."""
+"""The usual step of recorded epochs, where some of them are absent, and the silence after which nothing is known."""
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from navbound.rnp.exposure import LONGEST_STEP_S
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -65,3 +68,10 @@ def period_s(steps_ns: NDArray[np.int64]) -> float:
     usual = usual_ms(n_of_steps, of=steps_ns.size)
     steps = median_s * 1e3 / usual if usual else 0.0
     return usual * 1e-3 if 0 < absent_in(steps) < _MOST else median_s
+
+
+def stale_after_s(of_period_s: float) -> float:
+    """Time after an epoch of a recording from which the monitor has nothing. [s]."""
+    from navbound.rnp import Monitor  # noqa: PLC0415  (which imports the modules of this folder)
+
+    return Monitor(sample_period_s=min(of_period_s, LONGEST_STEP_S), time_to_alert_s=math.inf).stale_after_s
