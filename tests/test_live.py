@@ -483,3 +483,11 @@ def test_degraded_epochs_and_positions_that_nobody_used_are_in_the_last_line(tmp
     assert (degraded.returncode, "; 5 epochs are degraded" in degraded.stdout) == (0, True)
     unused = ended("unused")
     assert (unused.returncode, "; no position was used" in unused.stdout) == (4, True)
+
+
+def test_a_file_that_analyze_reads_is_no_stream(tmp_path: Path) -> None:
+    pos = tmp_path / "a.pos"
+    pos.write_text("%  GPST  latitude(deg) longitude(deg)  height(m)   Q  ns\n2023/07/11 06:05:03.000 35.1 136.8 39.1 5 20\n")
+    done = CliRunner().invoke(app, ["live", str(pos), "--out", str(tmp_path / "out")])
+    assert isinstance(done.exception, InputError)
+    assert "this is RTKLIB solutions, which navbound analyze reads" in str(done.exception)

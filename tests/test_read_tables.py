@@ -462,3 +462,9 @@ def test_remarks_between_rows_are_counted(tmp_path: Path) -> None:
     assert sum(piece.height for piece in pieces.epochs()) == 60
     assert [(each.count, each.first_line) for each in pieces.rejected] == [(30, 5)]
     pieces.pieces.close()
+
+
+def test_sentences_without_a_position_are_no_table(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("$LXWP0,Y,222.3,1665.5,0.03,0.03,0.03*4E\r\n" * 20)
+    with pytest.raises(FormatError, match="sentences such as “\\$LXWP0"):
+        read(tmp_path / "a.txt")

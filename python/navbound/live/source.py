@@ -357,7 +357,13 @@ def _baud(name: str, query: str) -> int:
 
 
 def format_of(name: str) -> str | None:
-    """What a file holds, by its first bytes; None where that is not seen."""
+    """What a file holds, by its first bytes; None where that is not seen.
+
+    Raises
+    ------
+    InputError
+        It holds something that is not judged as it arrives.
+    """
     if Path(name).is_dir():
         return "json"
     try:
@@ -365,5 +371,9 @@ def format_of(name: str) -> str | None:
             start = file.read(1 << 16)
     except OSError:
         return None
-    known = formats.of(start).id
-    return known if known in FORMATS else None
+    known = formats.of(start)
+    if known.id in FORMATS:
+        return known.id
+    if known.id != "csv" and known.instead is None and "packed" not in known.holds:
+        raise InputError("source", name, domain=f"{', '.join(FORMATS)}; this is {known.title}, which navbound analyze reads")
+    return None

@@ -97,6 +97,8 @@ def _csv(source: Source) -> Table:
     return Table(rows.frame, rejections, rows.n_rows)
 
 
+_SENTENCE = r"[$!][A-Z0-9]{3,10},.*\*[0-9A-Fa-f]{2}\s*$"
+"""A line of NMEA 0183 or one like it: no names of columns."""
 _SEPARATORS, _SEPARATOR_WORDS = ",;\t", "comma, semicolon or tab"
 
 
@@ -179,6 +181,9 @@ def layout_of(path: Path, lines: pl.DataFrame) -> Layout:
     """
     header = str(lines["text"][0])
     _require_line_ends(path, lines.head(1), pl.col("text"))
+    if re.match(_SENTENCE, header):
+        what = f"sentences such as “{header[:40]}”, and none of a position that is read here (GGA, dated by RMC or ZDA)"
+        raise FormatError(path, what, int(lines[LINE][0]))
     separator = max(_SEPARATORS, key=header.count)
     if separator not in header and len(header.split()) > 2:
         what = f"no {_SEPARATOR_WORDS} in “{header[:60]}”: blanks separate no fields"
@@ -286,7 +291,7 @@ def _names(path: Path, header: str, separator: str) -> list[str]:
     require_few(path, len(names))
     repeated = [name for name, n in Counter(names).items() if n > 1 and name]
     if repeated:
-        raise FormatError(path, f"the column “{repeated[0]}” is named twice", 1)
+        raise FormatError(path, f"the column “{repeated[0]}” is named twice; give one of the two another name", 1)
     # Columns without a name (a data frame's index, what a person wrote beside, the separator at the end of a line) are seen by their place.
     return [name or ("" if f"column {k}" in names else f"column {k}") for k, name in enumerate(names, 1)]
 
