@@ -462,9 +462,15 @@ def test_a_pipe_with_a_name_is_a_source(tmp_path: Path) -> None:
     """It could not be sought in, and the session ended as a bug of navbound."""
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
-    lines = [json.dumps({"v": 1, "track": "a", "time_ns": live.session.now_ns() + k, "fte_m": 1.0, "sigma_m": 5.0}) for k in range(3)]
-    thread = threading.Thread(target=lambda: pipe.write_text("\n".join(lines) + "\n"), daemon=True)
-    thread.start()
+
+    def send() -> None:
+        # It opens once somebody reads it: the times are of then.
+        with pipe.open("w") as out:
+            now_ns = live.session.now_ns()
+            for k in range(3):
+                out.write(json.dumps({"v": 1, "track": "a", "time_ns": now_ns + k, "fte_m": 1.0, "sigma_m": 5.0}) + "\n")
+
+    threading.Thread(target=send, daemon=True).start()
     command = [sys.executable, "-m", "navbound", "live", str(pipe), "--format", "json", "--out", str(tmp_path / "o")]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 0, done.stderr

@@ -226,6 +226,7 @@ _Reports = tuple[NDArray[np.int64], NDArray[np.int64], _F, _F, _F]
 
 SPEEDS_BESIDE: int
 TURNING_MPS2: float
+LIVE_BALANCE: tuple[float, float, float, float]
 GGA_QUALITIES: list[int]
 DETERMINING_SATELLITES: int
 MOST_DILUTION: float

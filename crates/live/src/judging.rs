@@ -1,5 +1,6 @@
 //! One released record under the judge of its track.
 
+use crate::balance::{At, Balance};
 use crate::order::Arrived;
 use crate::output::{EpochOut, Kind, Output, Transition, Turn};
 use crate::position::{Position, TrackId};
@@ -130,6 +131,9 @@ fn believed(settings: &Settings, track: &mut Track, position: &Position) -> Posi
     };
     // A position that is merely late may contradict those before it all the same: the graver word counts.
     let reason = if finding == Some(Reason::PositionLate) { restless().or(finding) } else { finding.or_else(restless) };
+    // What is doubted by itself is no part of the way; the time goes on over it.
+    let mut behind = || track.balance.see(At { time_ns: position.time.nanoseconds(), lat_rad, lon_rad, speed_mps });
+    let reason = reason.or_else(|| behind().then_some(Reason::PositionStale));
     reason.map_or(*position, |reason| position.without(reason))
 }
 
@@ -160,7 +164,7 @@ pub(crate) fn judge(settings: &Settings, id: TrackId, track: &mut Track, arrived
     }
     if judged.step.acceptance == Acceptance::ClockSetBack {
         track.incarnation = track.incarnation.saturating_add(1);
-        (track.motion, track.neighbours) = (Motion::default(), Neighbours::default());
+        (track.motion, track.neighbours, track.balance) = (Motion::default(), Neighbours::default(), Balance::default());
     }
     if matches!(judged.step.acceptance, Acceptance::Accepted | Acceptance::ClockSetBack) {
         let next = track.last.map(|last| last.plus_seconds(settings.judge.monitor.chain.sample_period_s));

@@ -9,6 +9,7 @@
 //! a track in order, judge them by [`navbound_core::judge::Judge`], find silences by the event time of the lane.
 //! docs/methods/live.md says what an alert means.
 
+pub mod balance;
 mod claims;
 mod codec;
 mod counters;

@@ -1,5 +1,6 @@
 //! State of one track.
 
+use crate::balance::Balance;
 use crate::codec::{Damaged, Reader, Writer};
 use crate::order::Waiting;
 use crate::output::Kind;
@@ -30,6 +31,8 @@ pub(crate) struct Track {
     pub(crate) motion: Motion,
     /// Its last two positions.
     pub(crate) neighbours: Neighbours,
+    /// Its way, and that by its speeds.
+    pub(crate) balance: Balance,
     pub(crate) waiting: Waiting,
     /// Whether a record of it stated an RNP.
     pub(crate) states_rnp: bool,
@@ -48,6 +51,7 @@ impl Track {
             along: None,
             motion: Motion::default(),
             neighbours: Neighbours::default(),
+            balance: Balance::default(),
             waiting: Waiting::default(),
             states_rnp: false,
             silent: false,
@@ -136,6 +140,7 @@ impl Track {
                 [place.lat_rad, place.lon_rad, place.variance_m2].into_iter().for_each(|number| to.f64(number));
             });
         }
+        self.balance.write(to);
         self.waiting.write(to);
         to.flag(self.states_rnp);
         to.flag(self.silent);
@@ -199,8 +204,9 @@ impl Track {
             Ok(Place { time, lat_rad: from.f64()?, lon_rad: from.f64()?, variance_m2: from.f64()? })
         };
         let neighbours = Neighbours { last: [from.option(place)?, from.option(place)?] };
-        let (waiting, states_rnp, silent) = (Waiting::read(from)?, from.flag()?, from.flag()?);
-        Ok(Self { judge, incarnation, open, last, stepped, along, motion, neighbours, waiting, states_rnp, silent })
+        let (balance, waiting) = (Balance::read(from)?, Waiting::read(from)?);
+        let (states_rnp, silent) = (from.flag()?, from.flag()?);
+        Ok(Self { judge, incarnation, open, last, stepped, along, motion, neighbours, balance, waiting, states_rnp, silent })
     }
 }
 

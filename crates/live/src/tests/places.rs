@@ -185,3 +185,25 @@ fn a_line_with_another_place_of_the_vehicle_is_not_believed() {
         assert_eq!(of(&near), Some(Status::Ok), "{near}");
     }
 }
+
+/// A position that stands for a second in 26 and goes on from there is within every limit of a moment, and is behind for ever.
+#[test]
+fn a_way_that_falls_behind_its_speeds_in_all_is_not_believed() {
+    let flight = |holds: bool, n: u32| {
+        let mut way_s = 0.0;
+        let lines: Vec<String> = (0..n)
+            .map(|k| {
+                way_s += if holds && k % 26 == 25 { 0.0 } else { 1.0 };
+                // 200 m/s over a sphere of 6,371 km to the north, along a meridian.
+                line("d", f64::from(k), &placed(0.2 + 200.0 / 6_371_008.8 * way_s, ",\"ground_speed_mps\":200.0"))
+            })
+            .collect();
+        from_file(lines.into_iter()).0
+    };
+    let held = flight(true, 3000);
+    let stale = held.iter().position(|epoch| epoch.reason == Some(Reason::PositionStale)).expect("it is behind");
+    // A hold lacks 200 m of 5200, a fiftieth is 104: the rest reaches 5 km after 52 holds.
+    assert!((1300..1500).contains(&stale), "{stale}");
+    assert!(held[stale..].iter().all(|epoch| epoch.status != Status::Ok), "and stays so");
+    assert!(flight(false, 3000).iter().all(|epoch| epoch.status == Status::Ok));
+}

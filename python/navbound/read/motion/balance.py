@@ -5,19 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from navbound import _core
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
     from navbound.read.motion.ways import Minutes
 
-_FAST_MPS = 80.0
-"""Slower aircraft turn more tightly than the legs of a way follow. Provenance: ours. [m/s]"""
-_STRAIGHT = 0.98
-"""Share of a way that lies between its ends where it is straight. Provenance: ours. [1]"""
-_LACK_M, _LACK_SHARE = 5000.0, 0.02
-"""What the way of the positions of a track may lack in all, and the share of the way by its speeds more: a turn of three degrees a second
-shortens legs by one in a hundred. Provenance: ours. [m, 1]"""
+_FAST_MPS, _STRAIGHT, _LACK_M, _LACK_SHARE = _core.LIVE_BALANCE
+"""From which speed a way counts, how straight it must be, what it may lack in all, and the share of the way by the speeds that it may lack
+more: the rule of live feeds, whose crate has the reasons. [m/s, 1, m, 1]"""
 
 
 @dataclass
