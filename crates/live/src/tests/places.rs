@@ -200,10 +200,10 @@ fn a_way_that_falls_behind_its_speeds_in_all_is_not_believed() {
             .collect();
         from_file(lines.into_iter()).0
     };
-    let held = flight(true, 3000);
-    let stale = held.iter().position(|epoch| epoch.reason == Some(Reason::PositionStale)).expect("it is behind");
+    let late = flight(true, 3000);
+    let stale = late.iter().position(|epoch| epoch.reason == Some(Reason::PositionStale)).expect("it is behind");
     // A hold lacks 200 m of 5200, a fiftieth is 104: the rest reaches 5 km after 52 holds.
     assert!((1300..1500).contains(&stale), "{stale}");
-    assert!(held[stale..].iter().all(|epoch| epoch.status != Status::Ok), "and stays so");
+    assert!(late[stale..].iter().all(|epoch| epoch.status != Status::Ok), "and stays so");
     assert!(flight(false, 3000).iter().all(|epoch| epoch.status == Status::Ok));
 }
