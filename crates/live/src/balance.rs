@@ -4,6 +4,7 @@
 //! lack five kilometres and a fiftieth of the way by its speeds.
 
 use crate::codec::{Damaged, Reader, Writer};
+use crate::sphere::apart_m;
 
 /// Slower aircraft turn more tightly than the legs of a way follow. Provenance: ours \[m/s\].
 pub const FAST_MPS: f64 = 80.0;
@@ -18,7 +19,6 @@ pub const LACK_SHARE: f64 = 0.02;
 const WINDOW_NS: i64 = 60_000_000_000;
 /// Longest step that a way goes on over \[ns\].
 const LONGEST_NS: i64 = 10_000_000_000;
-const EARTH_M: f64 = 6_371_008.8;
 
 /// A place of a track that is believed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +27,12 @@ pub(crate) struct At {
     pub(crate) lat_rad: f64,
     pub(crate) lon_rad: f64,
     pub(crate) speed_mps: f64,
+}
+
+impl At {
+    fn apart_m(self, other: Self) -> f64 {
+        apart_m((self.lat_rad, self.lon_rad), (other.lat_rad, other.lon_rad))
+    }
 }
 
 /// The ways of one track.
@@ -51,13 +57,13 @@ impl Balance {
             return self.behind();
         }
         let (Some(begin), Some(last), Some(step_ns @ 1..)) = (self.begin, self.last, step_ns) else { return self.behind() };
-        self.of_window[0] += apart_m(&last, &at);
+        self.of_window[0] += last.apart_m(at);
         self.of_window[1] += 0.5 * (last.speed_mps + at.speed_mps) * step_ns as f64 * 1e-9;
         self.last = Some(at);
         let length_ns = at.time_ns.saturating_sub(begin.time_ns);
         if length_ns >= WINDOW_NS {
             let [way_m, by_speed_m] = self.of_window;
-            if by_speed_m >= FAST_MPS * length_ns as f64 * 1e-9 && apart_m(&begin, &at) >= STRAIGHT * way_m {
+            if by_speed_m >= FAST_MPS * length_ns as f64 * 1e-9 && begin.apart_m(at) >= STRAIGHT * way_m {
                 self.of_all = [self.of_all[0] + way_m, self.of_all[1] + by_speed_m];
             }
             (self.begin, self.of_window) = (Some(at), [0.0; 2]);
@@ -86,10 +92,4 @@ impl Balance {
         let (begin, last) = (from.option(place)?, from.option(place)?);
         Ok(Self { begin, last, of_window: [from.f64()?, from.f64()?], of_all: [from.f64()?, from.f64()?] })
     }
-}
-
-/// Distance of two places of one minute.
-fn apart_m(a: &At, b: &At) -> f64 {
-    let east = libm::remainder(b.lon_rad - a.lon_rad, core::f64::consts::TAU) * libm::cos(0.5 * (a.lat_rad + b.lat_rad));
-    EARTH_M * libm::hypot(b.lat_rad - a.lat_rad, east)
 }

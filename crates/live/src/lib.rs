@@ -25,6 +25,7 @@ mod output;
 mod position;
 mod settings;
 mod snapshot;
+mod sphere;
 mod split;
 mod track;
 mod zones;

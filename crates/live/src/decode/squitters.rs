@@ -9,6 +9,7 @@ use crate::claims::{Claim, Claims};
 use crate::codec::{Damaged, Reader, Writer};
 use crate::counters::Refused;
 use crate::position::{Position, Shown, TrackId};
+use crate::sphere::apart_m;
 use navbound_core::quantity::GpsTime;
 use navbound_formats::mode_s::{self, Categories, Content, Cpr, Fix, Sender, Squitter, Supplements, WrongParity, containment};
 use std::collections::BTreeMap;
@@ -29,8 +30,6 @@ const ARRIVAL_S: f64 = 1.0;
 const MOST_AIRCRAFT: usize = 50_000;
 /// Receivers mark so what multilateration computed: a counter that begins with these bytes; readsb.
 const COMPUTED: [u8; 5] = [0xff, 0x00, 0x4d, 0x4c, 0x41];
-/// Radius of the sphere that steps are measured on \[m\].
-const EARTH_M: f64 = 6_371_008.8;
 
 /// Something that was heard, and when \[ns\].
 type Heard<T> = Option<(T, i64)>;
@@ -203,12 +202,10 @@ impl Aircraft {
     }
 }
 
-/// Distance on the sphere \[m\].
+/// Distance of two places \[m\].
 fn step_m(a: Fix, b: Fix) -> f64 {
-    let (lat_a, lat_b) = (a.lat_deg.to_radians(), b.lat_deg.to_radians());
-    let half = |x: f64| libm::sin(0.5 * x) * libm::sin(0.5 * x);
-    let h = half(lat_b - lat_a) + libm::cos(lat_a) * libm::cos(lat_b) * half((b.lon_deg - a.lon_deg).to_radians());
-    2.0 * EARTH_M * libm::asin(libm::sqrt(h.clamp(0.0, 1.0)))
+    let radians = |fix: Fix| (fix.lat_deg.to_radians(), fix.lon_deg.to_radians());
+    apart_m(radians(a), radians(b))
 }
 
 /// Of several positions of an aircraft that arrived at once, only the last is known to be of then.

@@ -1,6 +1,7 @@
 //! What a line of JSON says of its own position under keys that are none of the contract.
 
 use crate::codec::{Damaged, Reader, Writer};
+use crate::sphere::{EARTH_M, LatLon};
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
 use serde_json::Value;
@@ -31,10 +32,6 @@ struct Places {
 
 /// Parts of names: latitude, longitude, what is none of the vehicle, inertial sensors; and how far such places may be away \[m\].
 pub type PlaceWords = ([Vec<String>; 4], [f64; 2]);
-
-/// A position in radians.
-pub(super) type LatLon = (f64, f64);
-const EARTH_M: f64 = 6_371_008.8;
 
 impl Places {
     /// Whether a number under a name is a coordinate of the vehicle that its position contradicts.
