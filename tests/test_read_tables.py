@@ -450,17 +450,20 @@ def test_gps_times_are_read_in_every_unit_and_small_ones_are_doubted(tmp_path: P
 
 def test_remarks_between_rows_are_counted(tmp_path: Path) -> None:
     """Thirty lines of `# GPS LOST` vanished without a word."""
-    rows = [f"2026-11-22T12:00:{k:02d}Z,{49 + k * 1e-4:.5f},2.5" + ("\n# GPS LOST" if k % 2 else "") for k in range(60)]
+    rows = [
+        f"2026-11-22T12:00:{k:02d}Z,{49 + k * 1e-4:.5f},2.5" + ("" if k % 2 == 0 else "\n# recorder v2" if k == 1 else "\n# GPS LOST")
+        for k in range(60)
+    ]
     text = "\n".join(["# what it is", "time,lat,lon", *rows]) + "\n"
     (tmp_path / "a.csv").write_text(text)
     reading = read(tmp_path / "a.csv")
     (rejection,) = reading.rejected
-    assert (rejection.reason, rejection.count, rejection.first_line) == ("a line that begins with #, which is a remark", 30, 5)
+    assert (rejection.reason, rejection.count, rejection.first_line) == ("a line that begins with #, which is a remark", 30, 8)
     assert rejection.example == "# GPS LOST"
     assert len(reading.epochs) == 60
     pieces = read_pieces(tmp_path / "a.csv", piece_rows=20)
     assert sum(piece.height for piece in pieces.epochs()) == 60
-    assert [(each.count, each.first_line) for each in pieces.rejected] == [(30, 5)]
+    assert [(each.count, each.first_line) for each in pieces.rejected] == [(30, 8)]
     pieces.pieces.close()
 
 

@@ -61,8 +61,33 @@ def test_a_track_under_another_name_is_compared(tmp_path: Path) -> None:
     assert aside.summary.verdict.id == "not_shown"
 
 
+@pytest.mark.parametrize("speed", [60.0, 120.0, 250.0])
+@pytest.mark.parametrize("mps", [0.0, 3.0])
+def test_a_speed_beside_positions_that_stand_or_creep_shows_nothing(tmp_path: Path, speed: float, mps: float) -> None:
+    """In the smallest of the units 60 are 17 m/s."""
+    run = analysed(tmp_path, "speed", [speed] * N, [mps + 0.1 * (-1) ** k for k in range(N)])
+    assert run.summary.verdict.id == "not_shown"
+
+
+def test_a_few_rows_decide_too(tmp_path: Path) -> None:
+    assert analysed(tmp_path, "speed", [75.0] * 13, [150.0] * 13).summary.verdict.position_doubts
+    assert not analysed(tmp_path, "speed", [150.0] * 13, [150.0] * 13).summary.verdict.position_doubts
+
+
+@pytest.mark.parametrize(("kt", "shown"), [(233.3, True), (450.0, False)])
+def test_a_number_with_its_unit_is_read(tmp_path: Path, kt: float, shown: bool) -> None:
+    analysed(tmp_path, "speed", [kt] * N, [120.0] * N)
+    path = tmp_path / "a.csv"
+    path.write_text(path.read_text().replace(f",{kt:.2f}\n", f",{kt:.1f} kt\n"))
+    assert (navbound.analyze(path, sigma_m=5.0).summary.verdict.id == "inside") == shown
+
+
+def test_a_column_of_zeros_states_nothing(tmp_path: Path) -> None:
+    assert analysed(tmp_path, "speed", [0.0] * N, [120.0] * N).summary.verdict.id == "inside"
+
+
 def test_a_vehicle_that_hardly_moves_decides_nothing(tmp_path: Path) -> None:
-    run = analysed(tmp_path, "speed", [3.0] * N, [1.5] * N)
+    run = analysed(tmp_path, "speed", [5.0] * N, [1.5] * N)
     assert run.summary.verdict.id == "inside"
     assert "ground_speed_mps" not in run.epochs.columns
     assert any("columns not used: speed" in each for each in run.summary.assumptions)

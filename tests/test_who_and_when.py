@@ -242,6 +242,10 @@ def _dms(degrees: float, letters: str) -> str:
     return f"{minutes // 60:.0f}°{minutes % 60 // 1:02.0f}'{minutes % 1 * 60:07.4f}\"{letters[degrees < 0]}"
 
 
+def _ddmm(degrees: float, letters: str) -> str:
+    return f"{int(abs(degrees))}{abs(degrees) % 1 * 60:07.4f}{letters[degrees < 0]}"
+
+
 FORMS: dict[str, Callable[[float, float], dict[str, Any]]] = {
     "integers of 1e-7 degrees": lambda lat, lon: {"gps_lat_e7": round(lat * 1e7), "gps_lon_e7": round(lon * 1e7)},
     "semicircles": lambda lat, lon: {"gps_lat_semi": round(lat / 180 * 2**31), "gps_lon_semi": round(lon / 180 * 2**31)},
@@ -253,6 +257,9 @@ FORMS: dict[str, Callable[[float, float], dict[str, Any]]] = {
     "longitude first": lambda lat, lon: {"geom": f"POINT({lon:.7f} {lat:.7f})"},
     "Earth-fixed axes": lambda lat, lon: dict(zip(("ecef_x", "ecef_y", "ecef_z"), _ecef(lat, lon), strict=True)),
     "axes of one letter": lambda lat, lon: dict(zip("XYZ", _ecef(lat, lon), strict=True)),
+    "three numbers": lambda lat, lon: {"geom": f"SRID=4326;POINT Z ({lon:.7f} {lat:.7f} 100.0)"},
+    "Earth-fixed axes in kilometres": lambda lat, lon: dict(zip(("X_km", "Y_km", "Z_km"), [m / 1e3 for m in _ecef(lat, lon)], strict=True)),
+    "degrees and minutes in one number": lambda lat, lon: {"nmea_lat": _ddmm(lat, "NS"), "nmea_lon": _ddmm(lon, "EW")},
     "in one word": lambda lat, lon: {"truelat": lat, "truelon": lon},
     "in another language": lambda lat, lon: {"latitud_real": lat, "longitud_real": lon},
 }

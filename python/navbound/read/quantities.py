@@ -134,7 +134,8 @@ QUANTITIES: tuple[Quantity, ...] = (
         mps="speed_mps vel_m_s",
         kmh="speed_kmh speed_km_h speed_kph ground_speed_kmh gs_kmh",
         # Names that are in use for several units: with their unit alone.
-        written="speed velocity spd speed_over_ground gnd_spd gndspd groundspd gspeed vg hspeed hspd horizontal_speed speed_2d speed2d",
+        written="speed velocity spd speed_over_ground gnd_spd gndspd groundspd gspeed vg hspeed hspd horizontal_speed speed_2d speed2d "
+        "vel horizontal_velocity velocity_horizontal h_speed track_speed calc_speed",
     ),
     _q("vel_n_mps", -2e4, 2e4, mps="vel_n_m_s vn_mps vn_m_s vn velocity_n velocity_north vel_north north_velocity v_north"),
     _q("vel_e_mps", -2e4, 2e4, mps="vel_e_m_s ve_mps ve_m_s ve velocity_e velocity_east vel_east east_velocity v_east"),

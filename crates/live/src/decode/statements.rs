@@ -43,7 +43,7 @@ impl Places {
             (_, true) => (lon_rad, EARTH_M * libm::cos(lat_rad)),
             _ => return false,
         };
-        let number = value.as_f64().or_else(|| value.as_str().and_then(|text| text.trim().parse().ok()));
+        let number = value.as_f64().or_else(|| value.as_str().and_then(angle));
         // Who has no position writes zeros.
         let Some(number) = number.filter(|number| *number != 0.0 && !any(&self.of_others)) else { return false };
         let unit = |name: &str| parts.iter().any(|part| part == name);
@@ -52,6 +52,16 @@ impl Places {
         let [of_any, of_inertial] = self.apart_m;
         apart_m > if any(&self.inertial) { of_inertial } else { of_any }
     }
+}
+
+/// A number, which may stand before the letter of its hemisphere.
+fn angle(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let (digits, sign) = match text.strip_suffix(['N', 'E', 'n', 'e']) {
+        Some(digits) => (digits, 1.0),
+        None => text.strip_suffix(['S', 'W', 's', 'w']).map_or((text, 1.0), |digits| (digits, -1.0)),
+    };
+    digits.trim().parse::<f64>().ok().map(|number| sign * number)
 }
 
 /// Parts of a name, in small letters: at what is neither letter nor digit, and before a capital.

@@ -169,6 +169,7 @@ fn a_line_with_another_place_of_the_vehicle_is_not_believed() {
         "\"position\":{\"lat_deg\":10,\"lon_deg\":10}".to_owned(),
         "\"EST_LAT_RAD\":0.6".to_owned(),
         "\"gpsLatitude\":\"10.5\"".to_owned(),
+        "\"gps_lat\":\"48.05N\"".to_owned(),
         format!("\"gps_lat_e7\":{:.0}", (lat_deg + 0.1) * 1e7),
         format!("\"irs_lat\":{}", lat_deg + 0.3),
     ] {
@@ -177,6 +178,7 @@ fn a_line_with_another_place_of_the_vehicle_is_not_believed() {
     for near in [
         format!("\"gps_lat\":{},\"gps_lon\":{}", lat_deg + 0.01, 0.1_f64.to_degrees() - 0.01),
         format!("\"gps_lat_e7\":{:.0}", lat_deg * 1e7),
+        format!("\"gps_lat\":\"{lat_deg:.6} N\""),
         "\"gps_lat\":0.0,\"gps_lon\":0.0".to_owned(),
         "\"dest_lat\":10.0,\"airport_lon\":10.0".to_owned(),
         format!("\"irs_lat\":{}", lat_deg + 0.1),

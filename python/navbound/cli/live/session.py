@@ -408,7 +408,9 @@ def _ended(session: Session, settings: Settings, *, json: bool) -> None:
     )
     if not session.n_epochs:
         needs = "; a line is an object with at least v (1), track, time_ns, est_lat_rad, est_lon_rad" if settings.format == "json" else ""
-        sentence += f"; no epoch was judged: nothing of the source is read as {settings.format}{needs}; --format names what it sends"
+        unreadable = not counters["n_records"] and not counters["refused_too_old"]
+        why = f": nothing of the source is read as {settings.format}{needs}; --format names what it sends" if unreadable else ""
+        sentence += f"; no epoch was judged{why}"
     if degraded := counters["n_degraded"]:
         sentence += f"; {degraded:g} epochs are degraded"
     if keys := session.passed_over():

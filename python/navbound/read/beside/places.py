@@ -38,7 +38,8 @@ _PAIR_WORDS = frozenset(
     ("pos", "position", "coord", "coords", "coordinate", "coordinates", "geom", "geometry", "loc", "location", "point", "place")
 ) | {"latlon", "latlng", "lonlat"}
 """Parts of names of columns with two numbers in one field."""
-_PAIR = r"^(POINT\s*)?[\s\[(]*[-+]?\d{1,3}\.\d+[\s,;]+[-+]?\d{1,3}\.\d+([\s,;]+[-+]?\d+(\.\d+)?)?[\s\])]*$"
+_SRID = r"^SRID=\d+;\s*"
+_PAIR = r"^(POINT\s*(Z|ZM)?\s*)?[\s\[(]*[-+]?\d{1,3}\.\d+[\s,;]+[-+]?\d{1,3}\.\d+([\s,;]+[-+]?\d+(\.\d+)?)?[\s\])]*$"
 _EARTH_M = (6.3e6, 6.5e6)
 """Distances from the Earth's centre that make three numbers a position. [m]"""
 
@@ -112,7 +113,7 @@ def _ecef(free: Sequence[str]) -> tuple[str, str, str] | None:
 
 
 def _bare(name: str) -> str:
-    return "_".join(part for part in name_parts(name) if part not in {"", "m"})
+    return "_".join(part for part in name_parts(name) if part not in {"", "m", "km"})
 
 
 class OtherPlaces:
@@ -179,8 +180,13 @@ def _of_axis(column: pl.Series, axis: Axis, *, radians: bool) -> tuple[int, list
     numbers[numbers == 0.0] = np.nan
     forms, most = ({"rad": 1.0} if radians else _FORMS), 0.5 * np.pi if axis == LAT else 2.0 * np.pi
     read: list[tuple[str, NDArray[np.float64]]] = []
-    for form, factor in forms.items():
-        angle = numbers * factor
+    angles = {form: numbers * factor for form, factor in forms.items()}
+    if not radians:
+        # Degrees and minutes in one number, as sentences of NMEA have them.
+        whole = np.trunc(numbers / 100.0)
+        minutes = numbers - 100.0 * whole
+        angles["ddmm"] = np.radians(np.where(np.abs(minutes) < 60.0, whole + minutes / 60.0, np.nan))
+    for form, angle in angles.items():
         angle[~(np.abs(angle) <= most)] = np.nan
         there = np.zeros((len(angle), 2))
         there[:, (LAT, LON).index(axis)] = angle
@@ -210,7 +216,7 @@ def _of_pairs(column: pl.Series) -> tuple[int, list[tuple[str, NDArray[np.float6
     if isinstance(dtype, pl.List) and pl.Series(dtype=dtype.inner).dtype.is_numeric():
         numbers = column
     elif dtype == pl.String:
-        text = column.str.strip_chars().str.to_uppercase()
+        text = column.str.strip_chars().str.to_uppercase().str.replace(_SRID, "")
         numbers = text.set(~text.str.contains(_PAIR), None).str.extract_all(r"[-+]?\d+(?:\.\d+)?")
     else:
         return 0, []
@@ -230,6 +236,9 @@ def _of_ecef(frame: pl.DataFrame) -> tuple[int, list[tuple[str, NDArray[np.float
     axes = np.column_stack([_floats(frame[name].cast(pl.Float64, strict=False)) for name in frame.columns])
     there = np.full((len(axes), 2), np.nan)
     length_m = np.linalg.norm(axes, axis=1)
+    if np.isfinite(length_m).any() and np.nanmedian(length_m) < 1e-2 * _EARTH_M[0]:
+        # In kilometres.
+        axes, length_m = 1e3 * axes, 1e3 * length_m
     on_earth = (length_m > _EARTH_M[0]) & (length_m < _EARTH_M[1])
     if on_earth.any():
         there[on_earth] = gnss.geodetic(axes[on_earth])[:, :2]

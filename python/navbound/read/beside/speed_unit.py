@@ -27,12 +27,14 @@ _UNITS = ("mps", "kt", "km/h", "mph")
 _WINDOW_NS = 10_000_000_000
 _LONGEST_NS = 3 * _WINDOW_NS
 """Ways are looked at over 10 s and at most 30 s, so that noise and rounding of positions do not count. Provenance: ours. [ns]"""
-_MOVING_MPS = 20.0
+_MOVING_MPS = 10.0
 """Slower ways say little beside the noise of positions. Provenance: ours. [m/s]"""
-_NEAR = 0.06
-"""A speed fits within this share: knots and miles an hour are 15 % apart. Provenance: ours. [1]"""
-_MOST, _LEAST_WAYS = 0.5, 5
-"""Share of the ways that a speed fits in its unit, and ways that decide. Provenance: ours. [1]"""
+_NEAR, _NOISE_MPS = 0.06, 1.0
+"""A speed fits within this share, as knots and miles an hour are 15 % apart, and the noise of a way. Provenance: ours. [1, m/s]"""
+_SLOWEST_MPS, _STANDS = 5.0, 0.5
+"""A speed that is this or more in the smallest of the units, over a way of less than this share of it, fits in none. Ours. [m/s, 1]"""
+_MOST = 0.5
+"""Share of the ways that a speed fits in its unit. Provenance: ours. [1]"""
 
 
 class SpeedUnit:
@@ -48,10 +50,19 @@ class SpeedUnit:
         self.name, self.unit = name, ""
         self._n_rows, self._head = 0, list[pl.DataFrame]()
         self._n, self._n_best = 0, 0
+        self._written = False
 
     def take(self, frame: pl.DataFrame) -> pl.Series:
         """The numbers of some rows."""
-        values = frame[self.name].cast(pl.Float64, strict=False)
+        column = frame[self.name]
+        values = column.cast(pl.Float64, strict=False)
+        if column.dtype == pl.String:
+            # A number with its unit is one of metres per second.
+            parts = column.str.to_lowercase().str.extract_groups(r"^\s*(\d+(?:\.\d+)?)\s*([a-z][a-z/]*)\s*$").struct.unnest()
+            factor = parts["2"].replace_strict(UNITS["mps"], default=None, return_dtype=pl.Float64)
+            written = parts["1"].cast(pl.Float64, strict=False) * factor
+            self._written |= written.count() > 0
+            values = pl.select(pl.coalesce(written, values)).to_series()
         return pl.select(pl.when(values.is_finite() & (values >= 0.0)).then(values).alias(SPEED)).to_series()
 
     def see(self, part: pl.DataFrame) -> None:
@@ -67,10 +78,12 @@ class SpeedUnit:
     def understand(self, timed: pl.DataFrame) -> None:
         """Decide by the head with `track` and `time_ns`."""
         self._head = []
-        rows = timed.drop_nulls(["time_ns", "est_lat_rad", "est_lon_rad", SPEED]).sort("track", "time_ns", maintain_order=True)
+        # Of a column of zeros nobody knows whether it states anything.
+        rows = timed.drop_nulls(["time_ns", "est_lat_rad", "est_lon_rad", SPEED]).filter(pl.col(SPEED) > 0.0)
+        rows = rows.sort("track", "time_ns", maintain_order=True)
         window = (pl.col("time_ns") // _WINDOW_NS).alias("window")
         first = rows.group_by("track", window, maintain_order=True).agg(
-            pl.col("time_ns", "est_lat_rad", "est_lon_rad").first(), pl.col(SPEED).mean()
+            pl.col("time_ns", "est_lat_rad", "est_lon_rad").first(), pl.col(SPEED).median()
         )
         if first.height <= 1:
             return
@@ -79,12 +92,16 @@ class SpeedUnit:
         same = (first["track"][1:] == first["track"][:-1]).to_numpy() & (elapsed_ns > 0) & (elapsed_ns <= _LONGEST_NS)
         of_positions_mps = np.hypot(*east_north_m(place[:-1], place[1:]).T)[same] / (elapsed_ns[same] * 1e-9)
         stated = first[SPEED].to_numpy()[:-1][same]
-        moving = of_positions_mps >= _MOVING_MPS
-        self._n = int(moving.sum())
-        fits = {unit: int((np.abs(stated[moving] * UNITS["mps"][unit] / of_positions_mps[moving] - 1.0) <= _NEAR).sum()) for unit in _UNITS}
+        smallest_mps = stated * min(UNITS["mps"][unit] for unit in _UNITS)
+        stands = (smallest_mps >= _SLOWEST_MPS) & (of_positions_mps < _STANDS * smallest_mps)
+        moves = (of_positions_mps >= _MOVING_MPS) & ~stands
+        self._n = int((moves | stands).sum())
+        within_mps = _NEAR * of_positions_mps + _NOISE_MPS
+        units = ("mps",) if self._written else _UNITS
+        fits = {unit: int((moves & (np.abs(stated * UNITS["mps"][unit] - of_positions_mps) <= within_mps)).sum()) for unit in units}
         best = max(fits, key=lambda unit: fits[unit])
         self._n_best = fits[best]
-        if self._n >= _LEAST_WAYS and self._n_best > _MOST * self._n:
+        if self._n_best > _MOST * self._n:
             self.unit = best
 
     def made(self, part: pl.DataFrame) -> pl.DataFrame:
@@ -100,7 +117,7 @@ class SpeedUnit:
             n = f"{self._n_best} of {self._n} ways of 10 s"
             what = f"states no unit and is read in {self.unit}, in which it is the speed of the positions on {n}"
             return [f"{path.name}: “{self.name}” {what}; if it is not, {how}"], []
-        if self._n < _LEAST_WAYS:
+        if not self._n:
             return [], []
         units = ", ".join(_UNITS)
         return [], [

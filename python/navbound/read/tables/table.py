@@ -14,6 +14,7 @@ import polars as pl
 
 from navbound.errors import FormatError
 from navbound.read.checks.rejections import Rejections
+from navbound.read.checks.statements import alarms
 from navbound.read.tables import readsb
 from navbound.read.tables.memory import require_free
 from navbound.storage import packed
@@ -271,7 +272,12 @@ def rows_of(path: Path, layout: Layout, lines: pl.DataFrame) -> Rows:
         raise FormatError(path, f"not a table: {good.height} lines make {frame.height} rows")
     named = {str(i): name for i, name in enumerate(layout.names) if name}
     frame = _split(frame.select(named.keys()).rename(named), layout.pair)
-    of_remarks = None if remarks.is_empty() else (_REMARK, remarks.height, int(remarks[LINE][0]), str(remarks["text"][0]))
+    of_remarks = None
+    if not remarks.is_empty():
+        # One that states an alarm is shown before others.
+        stated = remarks.filter(alarms(remarks["text"]).against.is_not_null())
+        text, line = (stated if stated.height else remarks).select("text", LINE).row(0)
+        of_remarks = (_REMARK, remarks.height, int(line), str(text))
     return Rows(frame.with_columns(good[LINE]), counted.height, refused, of_remarks)
 
 
