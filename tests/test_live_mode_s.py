@@ -216,16 +216,31 @@ def moved(address: int, n: int, *, north_deg: float) -> Iterator[tuple[float, by
 
 
 def test_lanes_part_messages_by_aircraft_and_judge_them_as_one(tmp_path: Path) -> None:
-    sent = sorted((t, content) for address in (0x4CA123, 0x4CA124, 0xABCDEF) for t, content in flight(address, 10))
-    splitter = _core.LiveSplitter("beast", 3)
-    stream = b"".join(beast(content) for _, content in sent)
-    lanes = [b""] * 3
-    for at in range(0, len(stream), 7):
-        lanes = [lane + more for lane, more in zip(lanes, splitter.push(stream[at : at + 7]), strict=True)]
-    assert sum(map(len, lanes)) == len(stream)
+    addresses = (0x4CA123, 0x4CA124, 0xABCDEF)
+    sent = sorted((t, content) for address in addresses for t, content in flight(address, 10))
+    splitter, how = _core.LiveSplitter("beast", 3), live.Settings(format="beast", rnp_m=0.3 * NM)
+    lanes = [list[bytes]() for _ in range(3)]
+    for k, (t, content) in enumerate(sent):
+        framed = beast(content)
+        # In two pieces, as a connection may have them.
+        for at, (begin, rest) in enumerate(zip(splitter.push(framed[:5]), splitter.push(framed[5:]), strict=True)):
+            if begin + rest:
+                lanes[at].append(_core.live_input("chunk", T0_NS + round(t * 1e9) + k, begin + rest))
+    assert sum(map(len, lanes)) == len(sent)
     assert sum(1 for lane in lanes if lane) > 1
-    for lane in lanes:
-        assert len({lane[k + 10 : k + 13] for k in range(len(lane) - 13) if lane[k : k + 2] == b"\x1a3"}) <= 3
+    of_tracks = dict[str, list[tuple[object, ...]]]()
+    for k, lane in enumerate(lane for lane in lanes if lane):
+        (tmp_path / f"{k}").mkdir()
+        live.judge(recorded(tmp_path / f"{k}" / "in", b"".join(lane), how), tmp_path / f"{k}" / "out")
+        judged_alone = tables.epochs(tmp_path / f"{k}" / "out")
+        for (track,), alone in judged_alone.group_by("track"):
+            assert str(track) not in of_tracks, "an aircraft has one lane"
+            of_tracks[str(track)] = alone.sort("time_ns").select("time_ns", "est_lat_rad", "est_lon_rad", "accuracy_bound_m").rows()
+    together = epochs_of(tmp_path / "all", sent)
+    assert of_tracks.keys() == {f"{address:06x}" for address in addresses}
+    for track, rows in of_tracks.items():
+        of = together.filter(together["track"] == track).sort("time_ns")
+        assert of.select("time_ns", "est_lat_rad", "est_lon_rad", "accuracy_bound_m").rows() == rows
 
 
 def test_a_file_of_messages_is_refused_with_what_to_do(tmp_path: Path, navbound: Callable[..., Ended]) -> None:

@@ -4,7 +4,7 @@
 //! lack five kilometres and a fiftieth of the way by its speeds.
 
 use crate::codec::{Damaged, Reader, Writer};
-use crate::sphere::apart_m;
+use navbound_core::monitor::neighbours::east_north_m;
 
 /// Slower aircraft turn more tightly than the legs of a way follow. Provenance: ours \[m/s\].
 pub const FAST_MPS: f64 = 80.0;
@@ -31,7 +31,8 @@ pub(crate) struct At {
 
 impl At {
     fn apart_m(self, other: Self) -> f64 {
-        apart_m((self.lat_rad, self.lon_rad), (other.lat_rad, other.lon_rad))
+        let [east, north] = east_north_m([self.lat_rad, self.lon_rad], [other.lat_rad, other.lon_rad]);
+        libm::hypot(east, north)
     }
 }
 

@@ -25,7 +25,6 @@ mod output;
 mod position;
 mod settings;
 mod snapshot;
-mod sphere;
 mod split;
 mod track;
 mod zones;

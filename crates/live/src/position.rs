@@ -1,6 +1,6 @@
 //! One position report, whatever format it came in.
 
-use crate::claims::Claim;
+use crate::claims::{Bounds, Claim};
 use crate::codec::{Damaged, Reader, Writer};
 use navbound_core::quantity::{GpsTime, Reason, Status};
 
@@ -138,6 +138,15 @@ impl Position {
     #[must_use]
     pub const fn without(self, reason: Reason) -> Self {
         Self { status: reason.status(), reason: Some(reason), ..self }
+    }
+
+    /// With the bounds that its aircraft claims, or without a use for what it does not claim.
+    #[must_use]
+    pub(crate) fn bounded(self, bounds: Result<Bounds, Reason>) -> Self {
+        match bounds {
+            Ok(bounds) => Self { covariance_m2: Some(bounds.covariance_m2()), hpl_m: Some(bounds.containment_m), ..self },
+            Err(reason) => self.without(reason),
+        }
     }
 
     /// Whether it repeats another to the last bit.

@@ -127,8 +127,9 @@ fn explained(apart_m: f64, variance_m2: f64) -> bool {
     unexplained_m <= 0.0 || exp(-0.5 * (unexplained_m / sigma_m) * (unexplained_m / sigma_m)) >= RISK
 }
 
-/// The way from one place to another on a sphere; a meridian and the same one a turn further are one.
-pub(super) fn east_north_m([from_lat, from_lon]: [f64; 2], [lat, lon]: [f64; 2]) -> [f64; 2] {
+/// The way from one place to another on a sphere \[m\], of latitudes and longitudes \[rad\], good to a percent over some kilometres; a meridian
+/// and the same one a turn further are one.
+pub fn east_north_m([from_lat, from_lon]: [f64; 2], [lat, lon]: [f64; 2]) -> [f64; 2] {
     let turned = lon - from_lon;
     let turns = (turned / TAU + 0.5_f64.copysign(turned)) as i64 as f64;
     let east = 2.0 * EARTH_RADIUS_M * cos(from_lat) * sin(0.5 * (turned - TAU * turns));

@@ -11,4 +11,4 @@ pub use provenance::Provenance;
 pub use refusal::{Confidence, OutOfDomain, Unavailable};
 pub use status::{Reason, Status};
 pub use time::GpsTime;
-pub use unit::{Metres, Radians, Risk};
+pub use unit::{KNOT_MPS, Metres, Radians, Risk};

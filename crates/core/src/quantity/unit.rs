@@ -5,6 +5,9 @@ use super::OutOfDomain;
 /// Metres in one international nautical mile, exact by definition.
 const METRES_PER_NAUTICAL_MILE: f64 = 1852.0;
 
+/// Metres per second of a knot, exact by definition.
+pub const KNOT_MPS: f64 = METRES_PER_NAUTICAL_MILE / 3600.0;
+
 /// A length \[m\].
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default)]
 pub struct Metres(f64);
@@ -17,6 +20,10 @@ impl Metres {
     /// A length given in nautical miles (1 NM = 1852 m exactly).
     pub const fn nautical_miles(nm: f64) -> Self {
         Self(nm * METRES_PER_NAUTICAL_MILE)
+    }
+    /// A length given in feet (1 ft = 0.3048 m exactly).
+    pub const fn feet(ft: f64) -> Self {
+        Self(ft * 0.3048)
     }
     /// The number of metres.
     pub const fn m(self) -> f64 {

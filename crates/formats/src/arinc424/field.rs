@@ -8,7 +8,7 @@ use navbound_core::quantity::{Metres, Radians};
 /// Metres in a nautical mile (standard: International Hydrographic Conference 1929).
 pub(super) const NAUTICAL_MILE_M: f64 = Metres::nautical_miles(1.0).m();
 /// Metres in a foot (standard: 1959 agreement).
-const FOOT_M: f64 = 0.3048;
+const FOOT_M: f64 = Metres::feet(1.0).m();
 
 /// Characters of a field, blanks at its end left out when it is shown.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -34,13 +34,8 @@ impl Cpr {
     }
 
     /// Degrees of a zone of latitude.
-    pub fn zone_lat_deg(odd: bool) -> f64 {
+    fn zone_lat_deg(odd: bool) -> f64 {
         360.0 / (4.0 * ZONES - f64::from(u8::from(odd)))
-    }
-
-    /// Degrees of a zone of longitude at a latitude.
-    pub fn zone_lon_deg(odd: bool, lat_deg: f64) -> f64 {
-        360.0 / (f64::from(n_zones(lat_deg)) - f64::from(u8::from(odd))).max(1.0)
     }
 
     /// The position of `self`, with the last report of the other format; `None` where the two are of one format, or lie in different zones of

@@ -8,12 +8,11 @@ mod parity;
 mod radius;
 
 pub use cpr::{Cpr, Fix};
+use navbound_core::quantity::{KNOT_MPS, Metres};
 pub use radius::{Containment, Supplements, containment};
 
 /// Bytes of an extended squitter.
 pub const LONG: usize = 14;
-const METRES_PER_FOOT: f64 = 0.3048;
-const MPS_PER_KNOT: f64 = 1852.0 / 3600.0;
 /// Feet of a step of barometric altitude, and of a step of geometric less barometric height.
 const STEP_FT: f64 = 25.0;
 /// Altitude of the code zero \[ft\].
@@ -145,7 +144,7 @@ fn content(field: Field) -> Content {
             code,
             supplement_b: field.flag(8),
             // Whether the height of the codes 20 to 22 is in feet or in metres is said in two ways: it is left out.
-            pressure_altitude_m: (code < 19).then(|| pressure_altitude_ft(field.bits(9, 20))).flatten().map(|feet| feet * METRES_PER_FOOT),
+            pressure_altitude_m: (code < 19).then(|| pressure_altitude_ft(field.bits(9, 20))).flatten().map(metres),
             cpr: Cpr { odd: field.flag(22), lat: field.bits(23, 39) as u32, lon: field.bits(40, 56) as u32 },
         },
         (19, 1..=4) => velocity(field, subtype),
@@ -166,6 +165,10 @@ fn pressure_altitude_ft(code: u64) -> Option<f64> {
     (code & 0x10 != 0).then_some(LEAST_FT + STEP_FT * steps as f64)
 }
 
+fn metres(feet: f64) -> f64 {
+    Metres::feet(feet).m()
+}
+
 fn velocity(field: Field, subtype: u64) -> Content {
     // A part of zero is none, one means standing.
     let part = |first: u32| field.bits(first, first + 9).checked_sub(1).map(|knots| knots as f64);
@@ -177,10 +180,7 @@ fn velocity(field: Field, subtype: u64) -> Content {
     let step = if subtype == 2 { 4.0 } else { 1.0 };
     let sign = if field.flag(49) { -1.0 } else { 1.0 };
     let difference_ft = field.bits(50, 56).checked_sub(1).map(|steps| sign * STEP_FT * steps as f64);
-    Content::Velocity {
-        ground_speed_mps: knots.map(|knots| knots * step * MPS_PER_KNOT),
-        geometric_less_pressure_m: difference_ft.map(|feet| feet * METRES_PER_FOOT),
-    }
+    Content::Velocity { ground_speed_mps: knots.map(|knots| knots * step * KNOT_MPS), geometric_less_pressure_m: difference_ft.map(metres) }
 }
 
 /// The message of a line as receivers print them: `*8D4840D6202CC371C32CE0576098;`, with the counter of the receiver behind `@` instead.

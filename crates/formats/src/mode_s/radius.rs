@@ -3,7 +3,9 @@
 //! Source: rows of ICAO Doc 9871 (part B, table of NIC), DO-260B table 2-69 and ED-102B table N-16, as the specification of surveillance
 //! quotes them from texts that agree; standard. Two well-known decoders hold wrong rows, so the table is ours.
 
-const NM_M: f64 = 1852.0;
+use navbound_core::quantity::Metres;
+
+const NM_M: f64 = Metres::nautical_miles(1.0).m();
 
 /// Bits that tell rows of one type code apart; `None` while the message that holds it was not heard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

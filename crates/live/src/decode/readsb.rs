@@ -5,13 +5,11 @@ use super::Decoded;
 use crate::claims::{Claim, Claims};
 use crate::counters::Refused;
 use crate::position::{Position, Shown, TrackId};
-use navbound_core::quantity::{Metres, Reason};
+use navbound_core::quantity::{KNOT_MPS, Metres, Reason};
 use navbound_formats::time;
 use serde::Deserialize;
 use std::borrow::Cow;
 
-const METRES_PER_FOOT: f64 = 0.3048;
-const MPS_PER_KNOT: f64 = Metres::nautical_miles(1.0).m() / 3600.0;
 const NS_PER_S: f64 = 1e9;
 /// Negative age up to which rounding explains it \[s\], as in recordings. Provenance: ours.
 const OLDEST_AHEAD_S: f64 = 2.0;
@@ -90,8 +88,8 @@ pub(super) fn position(line: &[u8], claims: &Claims) -> Decoded {
     let known = Position {
         lat_rad: Some(lat_deg.to_radians()),
         lon_rad: Some(lon_deg.to_radians()),
-        h_m: line.alt_geom.map(|feet| feet * METRES_PER_FOOT),
-        ground_speed_mps: line.gs.map(|knots| knots * MPS_PER_KNOT),
+        h_m: line.alt_geom.map(|feet| Metres::feet(feet).m()),
+        ground_speed_mps: line.gs.map(|knots| knots * KNOT_MPS),
         shown: Shown { claim, ..Shown::default() },
         ..Position::new(track, time)
     };
@@ -103,10 +101,7 @@ pub(super) fn position(line: &[u8], claims: &Claims) -> Decoded {
     if of_the_future {
         return Ok(known.without(Reason::Reported));
     }
-    Ok(match claims.bounds(claim) {
-        Ok(bounds) => Position { covariance_m2: Some(bounds.covariance_m2()), hpl_m: Some(bounds.containment_m), ..known },
-        Err(reason) => known.without(reason),
-    })
+    Ok(known.bounded(claims.bounds(claim)))
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use crate::claims::{Claim, Claims};
 use crate::codec::{Damaged, Reader, Writer};
 use crate::counters::Refused;
 use crate::position::{Position, Shown, TrackId};
-use crate::sphere::apart_m;
+use navbound_core::monitor::neighbours::east_north_m;
 use navbound_core::quantity::GpsTime;
 use navbound_formats::mode_s::{self, Categories, Content, Cpr, Fix, Sender, Squitter, Supplements, WrongParity, containment};
 use std::collections::BTreeMap;
@@ -195,17 +195,18 @@ impl Aircraft {
             sil: categories.map(|categories| categories.sil),
         };
         let known = Position { shown: Shown { claim, ..Shown::default() }, ..known };
-        match claims.bounds_within(claim, contained.radius_m) {
-            Ok(bounds) => Position { covariance_m2: Some(bounds.covariance_m2()), hpl_m: Some(bounds.containment_m), ..known },
-            Err(reason) => known.without(reason),
-        }
+        known.bounded(claims.bounds_within(claim, contained.radius_m))
     }
 }
 
-/// Distance of two places \[m\].
+/// Distance of two places; that of far ones is not exact, and far all the same \[m\].
 fn step_m(a: Fix, b: Fix) -> f64 {
-    let radians = |fix: Fix| (fix.lat_deg.to_radians(), fix.lon_deg.to_radians());
-    apart_m(radians(a), radians(b))
+    let [east, north] = east_north_m(radians(a), radians(b));
+    libm::hypot(east, north)
+}
+
+fn radians(fix: Fix) -> [f64; 2] {
+    [fix.lat_deg.to_radians(), fix.lon_deg.to_radians()]
 }
 
 /// Of several positions of an aircraft that arrived at once, only the last is known to be of then.

@@ -1,7 +1,7 @@
 //! What a line of JSON says of its own position under keys that are none of the contract.
 
 use crate::codec::{Damaged, Reader, Writer};
-use crate::sphere::{EARTH_M, LatLon};
+use navbound_core::monitor::neighbours::east_north_m;
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
 use serde_json::Value;
@@ -16,6 +16,9 @@ pub struct Statements {
     modes: BTreeSet<String>,
     places: Places,
 }
+
+/// A position in radians.
+pub(super) type LatLon = (f64, f64);
 
 /// Parts of names by which tables know another place of the vehicle.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -38,17 +41,18 @@ impl Places {
     fn contradict(&self, key: &str, value: &Value, (lat_rad, lon_rad): LatLon) -> bool {
         let parts = parts(key);
         let any = |words: &BTreeSet<String>| parts.iter().any(|part| words.contains(part.trim_end_matches(|c: char| c.is_ascii_digit())));
-        let (own_rad, scale_m) = match (any(&self.latitude), any(&self.longitude)) {
-            (true, _) => (lat_rad, EARTH_M),
-            (_, true) => (lon_rad, EARTH_M * libm::cos(lat_rad)),
-            _ => return false,
-        };
+        let is_latitude = any(&self.latitude);
+        if !is_latitude && !any(&self.longitude) {
+            return false;
+        }
         let number = value.as_f64().or_else(|| value.as_str().and_then(angle));
         // Who has no position writes zeros.
         let Some(number) = number.filter(|number| *number != 0.0 && !any(&self.of_others)) else { return false };
         let unit = |name: &str| parts.iter().any(|part| part == name);
         let other_rad = if unit("rad") { number } else { (number * if unit("e7") || unit("1e7") { 1e-7 } else { 1.0 }).to_radians() };
-        let apart_m = libm::remainder(other_rad - own_rad, core::f64::consts::TAU).abs() * scale_m;
+        let there = if is_latitude { [other_rad, lon_rad] } else { [lat_rad, other_rad] };
+        let [east, north] = east_north_m([lat_rad, lon_rad], there);
+        let apart_m = east.abs().max(north.abs());
         let [of_any, of_inertial] = self.apart_m;
         apart_m > if any(&self.inertial) { of_inertial } else { of_any }
     }

@@ -64,7 +64,7 @@ class Form(NamedTuple):
     high: tuple[float, float] = (-math.inf, -math.inf)
 
     def with_rows(self, lat: NDArray[np.float64], lon: NDArray[np.float64], apart_m: NDArray[np.float64], n: int) -> Form:
-        """With more rows; NaN where a form reads nothing. A place of one axis has NaN for the other."""
+        """With more rows; a distance that is NaN where the form reads nothing. A place of one axis has a constant for the other."""
         read = np.isfinite(apart_m)
         if not read.any():
             return self._replace(n=self.n + n)
@@ -129,7 +129,8 @@ class OtherPlaces:
         if not self._places or not {LAT, LON} <= set(part.columns):
             return
         own = part.select(LAT, LON).to_numpy().astype(np.float64)
-        self._own = self._own.with_rows(own[:, 0], own[:, 1], own.sum(axis=1), len(own))
+        here_m = np.where(np.isfinite(own).all(axis=1), 0.0, np.nan)
+        self._own = self._own.with_rows(own[:, 0], own[:, 1], here_m, len(own))
         for place in self._places:
             n, forms = _read(place, frame)
             for form, there in forms:
@@ -138,7 +139,7 @@ class OtherPlaces:
                 self._forms[place, form] = before.with_rows(there[:, 0], there[:, 1], apart_m, n)
 
     def _nearest(self, place: Place) -> Form | None:
-        """In the form that brings it nearest, of those that read its numbers; one that reads more of them goes before."""
+        """In the form that brings it nearest, of those that read its numbers."""
         forms = [form for (of, _), form in self._forms.items() if of == place and form.n_read > _READ_SHARE * form.n]
         return min(forms, key=lambda form: form.apart_m, default=None)
 

@@ -6,7 +6,6 @@ them, or is another one than that over the ground.
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -106,9 +105,9 @@ class SpeedUnit:
 
     def made(self, part: pl.DataFrame) -> pl.DataFrame:
         """Rows with the speed, where its unit is known."""
-        factor = UNITS["mps"].get(self.unit, math.nan)
-        speed = pl.when(pl.col(SPEED).is_not_null() & math.isfinite(factor)).then(pl.col(SPEED) * factor)
-        return part.with_columns(speed.cast(pl.Float64).alias("ground_speed_mps")).drop(SPEED) if self.unit else part.drop(SPEED)
+        if self.unit:
+            part = part.with_columns((pl.col(SPEED) * UNITS["mps"][self.unit]).alias("ground_speed_mps"))
+        return part.drop(SPEED)
 
     def words(self, path: Path) -> tuple[list[str], list[str]]:
         """A remark, and why nothing can be shown of the positions."""

@@ -386,13 +386,14 @@ _NO_POSITION = _words(
 """Parts of names of something else. Provenance: ours."""
 
 
-def _parts(name: str) -> list[str]:
+def name_parts(name: str) -> list[str]:
+    """Parts of a name, in small letters: at what is neither letter nor digit, and before a capital."""
     return re.split(r"[^a-z0-9]+", re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name[:_LONGEST]).lower())
 
 
 def _parts_of_lengths(name: str) -> set[str]:
     """The parts of a name, and each without the plane or the share that it is of: `err2d`, `hpe95`."""
-    parts = {*_parts(name), name[:_LONGEST].lower()}
+    parts = {*name_parts(name), name[:_LONGEST].lower()}
     return parts | {_OF_PLANE_OR_SHARE.sub("", part) for part in parts}
 
 
@@ -410,14 +411,14 @@ _NO_TRUTH = _words("station base receiver frame system datum ellipsoid waypoint 
 
 def _speaks_of_truth(name: str) -> bool:
     """Whether the name is one of a true place that nothing reads, or of the distance from it: an error under another name."""
-    parts = set(_parts(name))
+    parts = set(name_parts(name))
     if not _NO_POSITION.isdisjoint(parts):
         return False
     return "truth" in name[:_LONGEST].lower() or _speaks_of_distance_from_truth(name)
 
 
 def _speaks_of_distance_from_truth(name: str) -> bool:
-    parts, together = set(_parts(name)), name[:_LONGEST].lower()
+    parts, together = set(name_parts(name)), name[:_LONGEST].lower()
     words = ("dist", "offset", "diff", "delta")
     apart = not _APART.isdisjoint(parts) or ("truth" in together and any(each in together for each in words))
     of_truth = "truth" in together or (not _POSITION.isdisjoint(parts) and not _OF_POSITION.isdisjoint(parts))
@@ -441,7 +442,7 @@ _INERTIAL = _words("irs ins iru ir adiru adirs inertial dr dead reckoning deadre
 
 def _speaks_of_place(name: str) -> bool:
     """Whether the name is one of another place of the vehicle: the truth of somebody else, a second receiver."""
-    parts = {part.rstrip("0123456789") for part in _parts(name)}
+    parts = {part.rstrip("0123456789") for part in name_parts(name)}
     return not _LATITUDE.isdisjoint(parts) and parts.isdisjoint(_NO_VEHICLE)
 
 
@@ -458,20 +459,15 @@ def other_place(name: str) -> Place | None:
     """The coordinate of another place of the vehicle that a column is by its name; or none."""
     if not _speaks_of_place(name):
         return None
-    parts = _parts(name)
+    parts = name_parts(name)
     words = {part.rstrip("0123456789") for part in parts}
     whose = tuple(re.sub("|".join(sorted(_LATITUDE, key=len, reverse=True)), "", part) for part in parts)
     return Place("est_lat_rad" if words & _LATITUDES else "est_lon_rad", whose, not _INERTIAL.isdisjoint(words))
 
 
-def name_parts(name: str) -> list[str]:
-    """Parts of a name, in small letters: at what is neither letter nor digit, and before a capital."""
-    return _parts(name)
-
-
 def is_no_vehicle(name: str) -> bool:
     """Whether a name is one of a place that is none of the vehicle now."""
-    return not _NO_VEHICLE.isdisjoint(part.rstrip("0123456789") for part in _parts(name))
+    return not _NO_VEHICLE.isdisjoint(part.rstrip("0123456789") for part in name_parts(name))
 
 
 def place_words() -> list[list[str]]:

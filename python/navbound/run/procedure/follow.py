@@ -21,7 +21,7 @@ from navbound.records.material import LEFT_OUT
 from navbound.records.procedure import BesideProcedure
 from navbound.records.run import Waypoint
 from navbound.rnp.exposure import LONGEST_STEP_S
-from navbound.rnp.usual import stale_after_s
+from navbound.rnp.usual import period_s, stale_after_s
 from navbound.run.procedure.answers import flown_record
 from navbound.run.procedure.heights import height_results, heights, setting_result
 from navbound.time import utc_text
@@ -103,7 +103,7 @@ def on_procedure(epochs: pl.DataFrame, flown: Flown) -> OnProcedure:
                 judged.append(part.filter(pl.Series(known)))
                 tracks[track] = str(group["track"][0])
                 due[track] = int(part["time_ns"][-1]) + round(each.due_s * 1e9)
-                unknown.append(_not_flown(track, due[track], each, _period_s(time_s[inside])))
+                unknown.append(_not_flown(track, due[track], each, np.diff(part["time_ns"].to_numpy())))
                 record = flown_record(track, group["time_ns"][0], flight, procedure, each)
                 of_heights = [] if loaded.path is None else height_results(judged[-1], loaded.path, height.altitude_m[inside][known])
                 tested = setting_result(time_s, float(time_s[each.last]), height, loaded)
@@ -165,13 +165,11 @@ def _on_legs(followed: Followed) -> Followed:
     return replace(followed, leg=np.where(followed.status == "strayed", -1, followed.leg))
 
 
-def _period_s(time_s: NDArray[np.float64]) -> float:
-    return float(np.median(np.diff(time_s))) if time_s.size > 1 else LONGEST_STEP_S
-
-
-def _not_flown(track: str, end_ns: int, each: Stretch, period_s: float) -> pl.DataFrame:
+def _not_flown(track: str, end_ns: int, each: Stretch, steps_ns: NDArray[np.int64]) -> pl.DataFrame:
     """The end of the procedure as an epoch that is expected, where it was due later than a gap may last that is none."""
-    return pl.DataFrame([{"track": track, "time_ns": end_ns}] if each.due_s > stale_after_s(period_s) else [], schema=LEFT_OUT)
+    # Of a single epoch nobody knows the period.
+    stale_s = stale_after_s(period_s(steps_ns) if steps_ns.size else LONGEST_STEP_S)
+    return pl.DataFrame([{"track": track, "time_ns": end_ns}] if each.due_s > stale_s else [], schema=LEFT_OUT)
 
 
 def _part(followed: Followed, rows: slice) -> Followed:

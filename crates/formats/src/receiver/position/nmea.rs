@@ -9,7 +9,7 @@ use super::epoch::{Message, all_of_kind, of_kind};
 use super::{Absent, Fields, Note, OfDay, Position, Reason, no_better, uncorrelated};
 use crate::measured::{GGA_QUALITIES, GSA_DIMENSIONS, LEAST_SATELLITES, NMEA_MODES};
 use crate::time::{Calendar, Scale, from_calendar, from_unix, to_calendar, to_unix};
-use navbound_core::quantity::{GpsTime, Metres};
+use navbound_core::quantity::{GpsTime, KNOT_MPS};
 use navbound_core::solution::plausible::DILUTION;
 
 const SECOND_NS: i64 = 1_000_000_000;
@@ -40,8 +40,6 @@ const FIELDS_AND_SPEED: Fields = &[
     ("ground_speed_mps", "RMC"),
     ("ground_track_rad", "RMC"),
 ];
-/// Metres per second in a knot.
-const KNOT_MPS: f64 = Metres::nautical_miles(1.0).m() / 3600.0;
 
 const fn name([a, b, c]: [u8; 3]) -> u32 {
     u32::from_be_bytes([0, a, b, c])
