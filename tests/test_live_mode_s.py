@@ -186,6 +186,25 @@ def test_what_multilateration_computed_is_not_the_aircrafts_word(tmp_path: Path)
     session.close()
 
 
+def test_a_receiver_that_hears_no_position_is_not_silent(tmp_path: Path) -> None:
+    """It was `quiet` until the first aircraft had two pairs of halves; without any message it is."""
+
+    def raised(name: str, until_s: int) -> list[str]:
+        short = b"\x5d\x48\x40\xd6\xf8\xdc\x4e"
+        inputs = list[bytes]()
+        for k in range(20):
+            if k < until_s:
+                inputs.append(_core.live_input("chunk", T0_NS + k * 1_000_000_000, beast(short)))
+            inputs.append(_core.live_input("heartbeat", T0_NS + k * 1_000_000_000 + 1, b""))
+        session = session_of(tmp_path / name, inputs)
+        session.close()
+        events = tmp_path / name / "out" / "events.jsonl"
+        return [json.loads(line)["kind"] for line in events.read_text().splitlines()] if events.exists() else []
+
+    assert raised("heard", 20) == []
+    assert raised("silent", 10) == ["quiet"]
+
+
 def test_of_positions_that_arrive_at_once_the_last_counts(tmp_path: Path) -> None:
     sent = list(flight(0x4CA123, 12))
     alone = [(t, content) for t, content in sent if t < 4.0]

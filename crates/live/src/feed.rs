@@ -16,7 +16,7 @@ const KINDS: [Kind; 5] = [Kind::Quiet, Kind::Clock, Kind::Garbled, Kind::FleetFu
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Feed {
     open: [Option<GpsTime>; KINDS.len()],
-    /// Last arrival of a record with a possible time.
+    /// Last arrival of a record with a possible time, or of a message of a source that sends many without a position.
     good: Option<GpsTime>,
     /// First record with an impossible time since then.
     bad_since: Option<GpsTime>,
@@ -49,6 +49,12 @@ impl Feed {
         (self.good, self.bad_since) = (Some(arrival), None);
         self.clear(Kind::Quiet, arrival, out);
         self.clear(Kind::Clock, arrival, out);
+    }
+
+    /// Whole messages, of which few hold a position: the source is not silent.
+    pub(crate) fn heard(&mut self, arrival: GpsTime, out: &mut Vec<Output>) {
+        self.good = Some(arrival);
+        self.clear(Kind::Quiet, arrival, out);
     }
 
     /// A record with an impossible time.

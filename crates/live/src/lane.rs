@@ -122,6 +122,9 @@ impl Lane {
         let n_refused = decoded.iter().filter(|each| each.as_ref().is_err_and(|reason| reason.unread())).count() as u64;
         self.counters.n_frames += n_frames;
         self.feed.frames(arrival, n_frames, n_refused, out);
+        if let Some(now) = arrival.filter(|_| n_frames > 0 && self.settings.format.is_of_messages()) {
+            self.feed.heard(now, out);
+        }
         for each in decoded {
             match each {
                 Ok(position) => self.accept(position, arrival, out),

@@ -55,6 +55,11 @@ impl Format {
         }
     }
 
+    /// Whether positions are made of several messages, most of which hold none.
+    pub(crate) const fn is_of_messages(self) -> bool {
+        matches!(self, Self::Beast | Self::Avr)
+    }
+
     fn unfinished(self) -> Unfinished {
         match self {
             Self::Json | Self::Readsb => Unfinished::Nothing,
