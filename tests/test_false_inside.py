@@ -94,7 +94,7 @@ def test_two_bounds_of_one_position_contradict_each_other(tmp_path: Path, name: 
     verdict = result.summary.verdict
     assert (verdict.inside, verdict.n_judged, verdict.n_implausible) == (None, 0, N)
     assert set(result.epochs["reason_id"]) == {"position_jump" if name == "h_m" else "invalid_number"}
-    reason = "time repeated within a track with another position, bound or status, or by a clock that stands"
+    reason = "time repeated within a track with another position, bound or status"
     assert [(r.reason, r.count) for r in result.summary.rejected] == [(reason, N)]
 
 

@@ -356,11 +356,12 @@ def _together(readings: Sequence[Reading], rejected: list[Rejection]) -> tuple[p
         epochs = epochs.with_columns(pl.col("status").fill_null("ok"))
     separated = separate(epochs)
     reason = "time repeated within a track of several files"
-    for words, repeated in ((reason, separated.identical), (f"{reason} with another position, bound or status", separated.contradicting)):
-        if not repeated.is_empty():
-            example = f"{repeated.height} epochs"
-            rejected.append(Rejection(file=readings[-1].source.path, reason=words, count=repeated.height, first_line=None, example=example))
-    return separated.epochs, pl.concat([*(r.left_out for r in readings), left_out(separated.contradicting)])
+    for words, repeated in separated.kinds.items():
+        example = f"{repeated.height} epochs"
+        rejected.append(
+            Rejection(file=readings[-1].source.path, reason=f"{reason}{words}", count=repeated.height, first_line=None, example=example)
+        )
+    return separated.epochs, pl.concat([*(r.left_out for r in readings), left_out(separated.unjudged)])
 
 
 def _ends(epochs: pl.DataFrame) -> pl.DataFrame:

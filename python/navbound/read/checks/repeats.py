@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import polars as pl
 
@@ -11,6 +12,9 @@ from navbound.read.checks.stated import ALERT
 from navbound.records.material import LEFT_OUT
 from navbound.table.columns import COVARIANCE, VARIANCES
 from navbound.units import EARTH_RADIUS_M
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
 
 SAME_PLACE_M = 1.0
 """Distance up to which two positions of one time are one, written with other digits. [m] Provenance: ours; five decimals of a degree."""
@@ -22,8 +26,10 @@ SAME_ALTITUDE_M = 50.0
 SAME_BOUND = 0.01
 """Relative difference up to which two numbers of an accuracy or a bound are one, written with other digits. [1] Provenance: ours."""
 
-CLOCK_STANDS = 10
-"""Rows of one time from which on the clock stands: logs that are joined twice repeat a row once. [1] Provenance: ours."""
+HEAPED = 10
+"""So many times as many rows of one time as is usual in the table are epochs of unknown times: logs that are joined twice repeat a row
+once, and of several messages an instant there are as many at each. Where the positions move meanwhile, the clock stands. [1]
+Provenance: ours."""
 
 STEP_S = 1.0
 """Step of stamps that are whole seconds: within it two positions of one stamp may be two fixes. [s]"""
@@ -60,20 +66,64 @@ class Repeats:
     ----------
     epochs : DataFrame
         One row a time; a contradicted one has status ``invalid_input``.
-    identical, contradicting : DataFrame
-        Rows left out: those that repeat the kept row of their time, and those with another position, bound or status,
-        or of a clock that stands.
-    earlier : DataFrame
-        Rows left out whose aircraft flew on within the same second, to the position that is kept.
+    kinds : dict of str to DataFrame
+        Rows left out, by how their time is repeated in words: those that repeat the kept row, those that cannot be judged, and those
+        whose aircraft flew on within the same second, to the position that is kept.
     """
 
     epochs: pl.DataFrame
-    identical: pl.DataFrame
-    contradicting: pl.DataFrame
-    earlier: pl.DataFrame
+    kinds: dict[str, pl.DataFrame]
+
+    @property
+    def unjudged(self) -> pl.DataFrame:
+        """Rows left out of which each is an epoch that is expected and cannot be judged."""
+        found = [self.kinds[words] for words in UNJUDGED if words in self.kinds]
+        return pl.concat(found) if found else self.epochs.clear()
 
 
-def separate(epochs: pl.DataFrame, *, whole_seconds: bool = False) -> Repeats:
+IDENTICAL = ""
+OTHERWISE = " with another position, bound or status"
+STANDS = " by a clock that stands while the positions move"
+HEAPS = f" {HEAPED} times as often as is usual in the table, or more; when these rows were is not known"
+EARLIER = " by a fix that was flown on from within the same second; the later one counts"
+UNJUDGED = (OTHERWISE, STANDS, HEAPS)
+
+
+def usual_rows(epochs: pl.DataFrame) -> dict[int, int]:
+    """How many times of a track have how many rows."""
+    counts = epochs.group_by("track", "time_ns").len("n").group_by("n").len("times")
+    return dict(counts.select("n", "times").iter_rows())
+
+
+def median_rows(times_of: Mapping[int, int]) -> int:
+    """Rows that half of the times have at most; 1 where there are none."""
+    half, so_far = sum(times_of.values()) / 2, 0
+    for n, times in sorted(times_of.items()):
+        so_far += times
+        if so_far >= half:
+            return n
+    return 1
+
+
+def without_shared(rows: pl.DataFrame, epochs: pl.DataFrame) -> tuple[pl.DataFrame, int]:
+    """Rows that were expected to hold a position, without those that say nothing of a time at which another row of the track has one.
+
+    Several messages of one instant are one epoch. A row that speaks against its position, or of an instant with `HEAPED` rows without a
+    position, is none of these: nobody knows whether its stamp is its own. Second: how many there were.
+    """
+    key = ["track", "time_ns"]
+    silent = rows.with_row_index("__row").filter("silent").join(epochs.select(key).unique(), on=key, how="semi")
+    shared = silent.filter(pl.len().over(key) < HEAPED)["__row"]
+    kept = rows.with_row_index("__row").filter(~pl.col("__row").is_in(shared.implode())).drop("__row")
+    return kept, len(shared)
+
+
+def shared_words(file: str, n: int) -> list[str]:
+    """A note on rows that share the instant of a position, where there are any."""
+    return [f"{file}: {n} rows without a position have the time of one with a position and count as one instant with it"] if n else []
+
+
+def separate(epochs: pl.DataFrame, *, whole_seconds: bool = False, usual: int = 1) -> Repeats:
     """One row a time out of rows sorted by track and time.
 
     Two rows of one time contradict each other where their positions lie further apart than `SAME_PLACE_M` (``position_jump``: no vehicle
@@ -82,12 +132,13 @@ def separate(epochs: pl.DataFrame, *, whole_seconds: bool = False) -> Repeats:
     counts; and of rows with errors and levels one whose error is above its level: no recorded hazard is left out.
 
     Where all stamps of the file are rounded to `whole_seconds` two fixes of one second share a stamp. A position that lies where the
-    reported speed and direction lead within it is one of them, and the later one in the file counts.
+    reported speed and direction lead within it is one of them, and the later one in the file counts. `usual` is how many rows of a time
+    are usual in the table.
     """
     key = ["track", "time_ns"]
     again = (pl.all_horizontal(pl.col(k) == pl.col(k).shift(1) for k in key)).fill_null(value=False)
     if not epochs.select(again.any()).item():
-        return Repeats(epochs, epochs.clear(), epochs.clear(), epochs.clear())
+        return Repeats(epochs, {})
     flown = _flown(epochs, key) if whole_seconds else pl.lit(value=False)
     epochs = _later_first(epochs.with_columns(_hazard(epochs).alias("__hazard"), flown.alias("__flown")), key)
     epochs = _with_every_alert(_gravest_first(epochs, key), key)
@@ -97,11 +148,22 @@ def separate(epochs: pl.DataFrame, *, whole_seconds: bool = False) -> Repeats:
     doubted = _completed(marked, key).with_columns(pl.col("__place", "__bound").any().over(key)).filter(~pl.col("__again"))
     kept = _refused(doubted.drop(_MARKS), doubted.select(_REASON).unnest("reason"))
     repeated = marked.filter("__again")
-    # A time that repeats so often is no second copy of a row: the clock stands, and its rows are epochs of unknown times.
-    stands = pl.len().over(key) >= CLOCK_STANDS
-    contradicts = repeated.select(pl.any_horizontal("__place", "__bound", "__status", stands)).to_series()
-    plain, earlier = repeated.drop(_MARKS), repeated["__flown"] & ~contradicts
-    return Repeats(kept, plain.filter(~contradicts & ~earlier), plain.filter(contradicts), plain.filter(earlier))
+    # The kept row of the time is one more.
+    heaped = pl.len().over(key) + 1 >= HEAPED * usual
+    words = (
+        pl.when(heaped & pl.col("__place").any().over(key))
+        .then(pl.lit(STANDS))
+        .when(pl.any_horizontal("__place", "__bound", "__status"))
+        .then(pl.lit(OTHERWISE))
+        .when(heaped)
+        .then(pl.lit(HEAPS))
+        .when("__flown")
+        .then(pl.lit(EARLIER))
+        .otherwise(pl.lit(IDENTICAL))
+    )
+    kinds = repeated.with_columns(words.alias("__kind")).drop(_MARKS)
+    found = {name: kinds.filter(pl.col("__kind") == name).drop("__kind") for name in (IDENTICAL, *UNJUDGED, EARLIER)}
+    return Repeats(kept, {name: rows for name, rows in found.items() if not rows.is_empty()})
 
 
 def _completed(epochs: pl.DataFrame, key: list[str]) -> pl.DataFrame:
@@ -168,7 +230,7 @@ def _flown(epochs: pl.DataFrame, key: list[str]) -> pl.Expr:
     # What reports no speed or no direction lies nowhere on the way.
     every = (on_the_way & pl.col("ground_speed_mps").is_not_null()).fill_null(value=False).all()
     several = (north**2 + east**2 > SAME_PLACE_M**2).any()
-    return (every & several & (way >= MOVING_MPS * STEP_S) & (pl.len() < CLOCK_STANDS)).over(key)
+    return (every & several & (way >= MOVING_MPS * STEP_S) & (pl.len() < HEAPED)).over(key)
 
 
 def _gravest_first(epochs: pl.DataFrame, key: list[str]) -> pl.DataFrame:
@@ -233,6 +295,18 @@ def _refused(kept: pl.DataFrame, reasons: pl.DataFrame) -> pl.DataFrame:
     if "status" not in kept.columns:
         kept = kept.with_columns(pl.lit("ok").alias("status"))
     return status.overridden(kept, reasons["reason_id"], reasons["sentence"])
+
+
+_OF_MOTION = ("est_h_m", "altitude_m", "ground_speed_mps", "ground_track_rad", "vertical_rate_mps", "callsign")
+"""What a row without a position may state and yet say nothing of one."""
+
+
+def expected(rows: pl.DataFrame, *, empty: pl.Expr, besides: Sequence[str]) -> pl.DataFrame:
+    """Track and time of rows without an epoch, and whether each is ``silent``: its position is `empty`, and it states nothing but motion."""
+    passed = {"track", "time_ns", "status", "est_lat_rad", "est_lon_rad", *_OF_MOTION, *besides}
+    others = [pl.col(name).is_null() for name in rows.columns if name not in passed]
+    fine = [(pl.col("status") == "ok").fill_null(value=True)] if "status" in rows.columns else []
+    return left_out(rows).with_columns(rows.select(pl.all_horizontal(empty, *fine, *others).alias("silent"))["silent"])
 
 
 def left_out(rows: pl.DataFrame) -> pl.DataFrame:

@@ -10,7 +10,7 @@ import polars as pl
 
 from navbound.errors import FormatError
 from navbound.read.checks.rejections import Rejections, Tally
-from navbound.read.checks.repeats import left_out, unread_rows
+from navbound.read.checks.repeats import left_out, shared_words, unread_rows, without_shared
 from navbound.read.pieces.chunks import CHUNK_BYTES, Chunks
 from navbound.read.pieces.order import Pieces
 from navbound.read.pieces.parquet import batches, is_parquet
@@ -19,7 +19,6 @@ from navbound.read.tables.columns import POSITION, assign, truth_as_position
 from navbound.read.tables.stated_units import HEAD_BYTES, require_same_in_remarks
 from navbound.read.tables.table import LINE, Layout, layout_of, rows_of
 from navbound.read.tables.values import Late, Values, one_row_a_time, texts
-from navbound.records.material import LEFT_OUT
 from navbound.storage.frames import Spool
 
 if TYPE_CHECKING:
@@ -52,6 +51,10 @@ class PiecedReading:
         Columns whose numbers may be in another unit than they are read in.
     whole_seconds : bool
         Two fixes of one second may share a stamp.
+    usual_rows : int
+        How many rows of a time are usual.
+    without : DataFrame
+        Rows without an epoch, of which some may share the instant of one.
     """
 
     source: InputFile
@@ -67,6 +70,8 @@ class PiecedReading:
     unread: list[str]
     position_doubts: list[str]
     whole_seconds: bool
+    usual_rows: int
+    without: pl.DataFrame
 
     @property
     def rejected(self) -> list[Rejection]:
@@ -81,14 +86,17 @@ class PiecedReading:
         FormatError
             More malformed rows than may be.
         """
-        tally, contradicting = Tally(), list[pl.DataFrame]()
+        tally, unjudged, n_shared = Tally(), list[pl.DataFrame](), 0
         for piece in self.pieces:
-            separated = one_row_a_time(piece, tally, whole_seconds=self.whole_seconds)
-            contradicting.append(left_out(separated.contradicting))
+            separated = one_row_a_time(piece, tally, whole_seconds=self.whole_seconds, usual=self.usual_rows)
+            unjudged.append(left_out(separated.unjudged))
+            self.without, n = without_shared(self.without, separated.epochs)
+            n_shared += n
             yield separated.epochs.drop(LINE)
         tally.into(self.rejections)
         self.rejections.refuse_if_too_many(self.n_rows)
-        self.left_out = pl.concat([self.left_out, *contradicting])
+        self.notes += shared_words(Path(self.source.path).name, n_shared)
+        self.left_out = pl.concat([self.left_out, left_out(self.without), *unjudged])
 
     def spread(self) -> Iterator[pl.DataFrame]:
         """Parts of each track that stands in several pieces, in order, as far as its first part with a reported speed."""
@@ -97,7 +105,9 @@ class PiecedReading:
             names = [track for track, (low, high) in spans.items() if low <= index <= high]
             rows = self.pieces.piece(index) if names else pl.DataFrame()
             rows = rows if rows.is_empty() else rows.filter(pl.col("track").is_in(names))
-            single = rows if rows.is_empty() else one_row_a_time(rows, Tally(), whole_seconds=self.whole_seconds).epochs
+            single = (
+                rows if rows.is_empty() else one_row_a_time(rows, Tally(), whole_seconds=self.whole_seconds, usual=self.usual_rows).epochs
+            )
             for part in [] if single.is_empty() else single.partition_by("track", maintain_order=True):
                 yield part
                 if "ground_speed_mps" in part.columns and part["ground_speed_mps"].is_not_null().any():
@@ -273,7 +283,7 @@ def _second_pass(first: _FirstPass, every: int) -> PiecedReading:
     values.understand()
     names = sorted({source.stem if name is None else name for name in first.names})
     pieces = Pieces(names, values.when(pl.concat(first.sample)), every)
-    late, without = Late(), [pl.DataFrame(schema=LEFT_OUT)]
+    late, without = Late(), list[pl.DataFrame]()
     with_levels, n = set[str](), 0
     for place in first.places:
         out, lost = values.timed(first.parts.get(place))
@@ -295,7 +305,7 @@ def _second_pass(first: _FirstPass, every: int) -> PiecedReading:
         unused=first.mapping.unused,
         notes=values.notes,
         columns=values.described(),
-        left_out=pl.concat([*without, unread_rows(source.stem, first.n_unread)]),
+        left_out=unread_rows(source.stem, first.n_unread),
         names=[name for name in names if pieces.has(name)],
         with_levels=with_levels,
         pieces=pieces,
@@ -304,6 +314,8 @@ def _second_pass(first: _FirstPass, every: int) -> PiecedReading:
         unread=values.unread,
         position_doubts=values.doubts(),
         whole_seconds=values.whole_seconds and first.beside is None,
+        usual_rows=values.usual_rows,
+        without=pl.concat(without),
     )
 
 

@@ -13,7 +13,7 @@ from navbound.errors import FormatError
 from navbound.read.checks import levels
 from navbound.read.checks.places import NO_PLACE, Nowhere
 from navbound.read.checks.rejections import Rejections, Tally
-from navbound.read.checks.repeats import left_out, unread_rows
+from navbound.read.checks.repeats import left_out, shared_words, unread_rows, without_shared
 from navbound.read.checks.stated import of_counted_satellites
 from navbound.read.source import Source, load
 from navbound.read.tables.columns import POSITION, Assignment, assign, truth_as_position
@@ -137,10 +137,13 @@ def _epochs(source: Source, content: Table, mapping: Assignment, required: Seque
     out, without = values.timed(part)
     values.tally.into(rejections)
     # A truth is of its stamp.
-    out, contradicting = _in_order(out, rejections, values.notes, whole_seconds=values.whole_seconds and not beside)
+    seconds = values.whole_seconds and not beside
+    out, unjudged = _in_order(out, rejections, values.notes, whole_seconds=seconds, usual=values.usual_rows)
+    without, n_shared = without_shared(without, out)
+    values.notes.extend(shared_words(source.path.name, n_shared))
     rejections.refuse_if_too_many(content.n_rows)
     _not_empty(source, out, rejections)
-    lost = pl.concat([without, unread_rows(source.stem, content.n_rows - content.frame.height), left_out(contradicting)])
+    lost = pl.concat([left_out(without), unread_rows(source.stem, content.n_rows - content.frame.height), left_out(unjudged)])
     of_file = (source.record(content.n_rows), rejections.records, mapping.unused, values.notes, values.described(), lost)
     return Reading(out.drop(LINE), *of_file, unread=values.unread, position_doubts=values.doubts())
 
@@ -171,13 +174,13 @@ def _rtklib(source: Source) -> Reading:
         rejections.add(NO_PLACE, without_place.height, without_place[LINE][0], "0, 0", malformed=False)
     # Without the field the reader has 0.
     out = of_counted_satellites(out)[0] if _STATES_SATELLITES.search(text) else out.drop("n_sv")
-    out, contradicting = _in_order(out, rejections, notes)
+    out, unjudged = _in_order(out, rejections, notes)
     rejections.refuse_if_too_many(d["n_rows"])
     _not_empty(source, out, rejections)
     empty = [c for c in out.columns if out[c].is_null().all()]
     # A selection of constants alone has one row of them even where no row was refused.
     without = refused.with_columns(track=pl.lit(source.stem), time_ns=pl.lit(None, pl.Int64)).select("track", "time_ns")
-    lost = _left_out(without, unmeasured, without_place, contradicting)
+    lost = _left_out(without, unmeasured, without_place, unjudged)
     return Reading(out.drop(LINE, *empty), source.record(d["n_rows"]), rejections.records, notes=notes, left_out=lost)
 
 
@@ -192,11 +195,11 @@ def _log(source: Source, log: receivers.Log) -> Reading:
     out, n_few = of_counted_satellites(out) if source.format.id == "nmea" else (out, 0)
     if n_few:
         log.notes.append(f"{source.path.name}: {n_few} positions count fewer satellites than determine one; they are not ok.")
-    out, contradicting = _in_order(out, rejections, log.notes)
+    out, unjudged = _in_order(out, rejections, log.notes)
     empty = [c for c in out.columns if out[c].is_null().all()]
     # The receiver lived and had no position: a row of a table without one counts in the same way.
     absent = pl.DataFrame({"track": [source.stem] * len(log.absent_ns), "time_ns": pl.Series(log.absent_ns, dtype=pl.Int64)})
-    lost = _left_out(absent, contradicting)
+    lost = _left_out(absent, unjudged)
     # Garmin's own sentence of its errors is named: which of the epochs around it is meant, and at which share, it does not say.
     unread = ["$PGRME (estimated position error)"] if source.format.id == "nmea" and b"$PGRME," in source.content else []
     of_file = (source.record(log.n_rows), rejections.records)
@@ -213,9 +216,9 @@ def _not_empty(source: Source, out: pl.DataFrame, rejections: Rejections) -> Non
 
 
 def _in_order(
-    out: pl.DataFrame, rejections: Rejections, notes: list[str], *, whole_seconds: bool = False
+    out: pl.DataFrame, rejections: Rejections, notes: list[str], *, whole_seconds: bool = False, usual: int = 1
 ) -> tuple[pl.DataFrame, pl.DataFrame]:
-    """One row an instant, in the order of time; a repeated instant of a track is left out and counted. Second: rows that contradict."""
+    """One row an instant, in the order of time; a repeated instant of a track is left out and counted. Second: rows that cannot be judged."""
     # Those of a table are null already.
     out, without = levels.without_bound(out)
     for name, at in without.items():
@@ -224,6 +227,6 @@ def _in_order(
     late, tally = Late(), Tally()
     late.see(out)
     notes += late.words(rejections.path, rejections.unit)
-    separated = one_row_a_time(out, tally, whole_seconds=whole_seconds)
+    separated = one_row_a_time(out, tally, whole_seconds=whole_seconds, usual=usual)
     tally.into(rejections)
-    return separated.epochs, separated.contradicting
+    return separated.epochs, separated.unjudged

@@ -15,7 +15,7 @@ from navbound.read.beside.speed_unit import SpeedUnit
 from navbound.read.checks import levels, stated, statements
 from navbound.read.checks.places import NO_PLACE, Nowhere
 from navbound.read.checks.rejections import Kind, Tally
-from navbound.read.checks.repeats import Repeats, left_out, separate
+from navbound.read.checks.repeats import EARLIER, IDENTICAL, UNJUDGED, Repeats, expected, median_rows, separate, usual_rows
 from navbound.read.quantities import POSITION_TIME, QUANTITY, UNITS
 from navbound.read.tables.cells import MISSING, largest, no_field, numbers, on_ground, smallest, words_of_ground
 from navbound.read.tables.columns import POSITION, Assignment, Column, declare, is_header, is_transponder, position_time
@@ -93,6 +93,7 @@ class Values:
         self._speed = SpeedUnit(mapping.speed) if mapping.speed else None
         self._facts, self._facts_dated = list[TimeFacts](), list[TimeFacts]()
         self._dtypes: dict[str, pl.DataType] = {}
+        self._times_of: dict[int, int] = {}
         self._n_unknown = 0
         self._unknown_statuses: dict[str, None] = {}
         self._unknown: dict[str, dict[str, None]] = {}
@@ -378,7 +379,7 @@ class Values:
         return (pl.col("track").fill_null(self._stem) if "track" in part.columns else pl.lit(self._stem)).alias("track")
 
     def timed(self, part: pl.DataFrame) -> tuple[pl.DataFrame, pl.DataFrame]:
-        """Rows with GPS time and track that may be epochs; and track and time of those that may not, which are counted."""
+        """Rows with GPS time and track that may be epochs; and those that may not, which are counted, as :func:`expected` has them."""
         raw = _written(part)
         time, reason = converted(raw, self._mapping.times, self._unit)
         name = self._mapping.times[0].name
@@ -402,7 +403,16 @@ class Values:
         for (reason_text,), group in without.group_by(_BAD, maintain_order=True):
             kind: Kind = "quiet" if str(reason_text).endswith(": empty") or reason_text == NO_PLACE else "row"
             self.tally.add(REQUIRED, str(reason_text), group.height, group[LINE][0], str(group[_EXAMPLE][0]), kind=kind)
-        return out.filter(pl.col(_BAD).is_null()).drop(_BAD, _EXAMPLE), left_out(without)
+        empty = pl.col(_BAD).is_in([f"{self._mapping.columns[each].name}: empty" for each in POSITION if each in self._required])
+        rows = out.filter(pl.col(_BAD).is_null()).drop(_BAD, _EXAMPLE)
+        for n, times in usual_rows(rows).items():
+            self._times_of[n] = self._times_of.get(n, 0) + times
+        return rows, expected(without, empty=empty, besides=(_BAD, _EXAMPLE, LINE))
+
+    @property
+    def usual_rows(self) -> int:
+        """How many rows of a time are usual in the table, after the last rows."""
+        return median_rows(self._times_of)
 
     def _without_nowhere(self, part: pl.DataFrame) -> pl.DataFrame:
         """A place that a receiver writes that has none speaks against its row; a receiver without a position is no damage of the file."""
@@ -499,19 +509,15 @@ class Late:
         return [f"{path.name}: {n} rows stood after a later one of their track and were put in order of time (first: {first})"]
 
 
-def one_row_a_time(out: pl.DataFrame, tally: Tally, *, whole_seconds: bool = False) -> Repeats:
+def one_row_a_time(out: pl.DataFrame, tally: Tally, *, whole_seconds: bool = False, usual: int = 1) -> Repeats:
     """Rows in the order of track and time, one an instant; the others are counted."""
-    separated = separate(out.sort("track", "time_ns", maintain_order=True), whole_seconds=whole_seconds)
-    reason = "time repeated within a track"
-    kinds = {
-        reason: separated.identical,
-        f"{reason} with another position, bound or status, or by a clock that stands": separated.contradicting,
-        f"{reason} by a fix that was flown on from within the same second; the later one counts": separated.earlier,
-    }
-    for place, (words, repeated) in enumerate(kinds.items()):
-        if not repeated.is_empty():
+    separated = separate(out.sort("track", "time_ns", maintain_order=True), whole_seconds=whole_seconds, usual=usual)
+    for place, words in enumerate((IDENTICAL, *UNJUDGED, EARLIER)):
+        repeated = separated.kinds.get(words)
+        if repeated is not None:
             track, time_ns, line = repeated.sort(LINE).select("track", "time_ns", LINE).row(0)
-            tally.add(REPEATED + place, words, repeated.height, line, f"track {track}, time_ns {time_ns}", kind="quiet")
+            reason = f"time repeated within a track{words}"
+            tally.add(REPEATED + place, reason, repeated.height, line, f"track {track}, time_ns {time_ns}", kind="quiet")
     return separated
 
 

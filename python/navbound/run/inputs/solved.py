@@ -125,14 +125,9 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
         Rejection(file=path, reason=f"no position: {REASONS[id_].words}", count=count, first_line=None, example=f"{count} epochs")
         for id_, count in without.group_by("reason_id").len().sort("reason_id").iter_rows()
     ]
-    kinds = {
-        "time repeated": repeats.identical,
-        "time repeated with another position, bound or status, or by a clock that stands": repeats.contradicting,
-    }
     rejected += [
-        Rejection(file=path, reason=reason, count=rows.height, first_line=None, example=f"{rows.height} epochs")
-        for reason, rows in kinds.items()
-        if not rows.is_empty()
+        Rejection(file=path, reason=f"time repeated{words}", count=rows.height, first_line=None, example=f"{rows.height} epochs")
+        for words, rows in repeats.kinds.items()
     ]
     rejected += of_observations(observations)
     notes = [f"{source.path.name}: {words}, which was to be used" for words in absent]
@@ -149,7 +144,7 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
     own = _own(source)
     unmeasured, words = _unmeasured(source, observations, own)
     notes += words
-    lost = pl.concat([left_out(without), left_out(repeats.contradicting), left_out(unread), unmeasured])
+    lost = pl.concat([left_out(without), left_out(repeats.unjudged), left_out(unread), unmeasured])
     columns = {"est_lat_rad": "solved from " + ", ".join(c for codes in solution.codes.values() for c in codes)}
     return Reading(
         known,
