@@ -62,7 +62,7 @@ def test_counts_are_those_of_the_tables_and_lists_of_the_session(folder: Path) -
     samples = parsed(metrics.of(folder))
     from navbound.live.sinks import tables  # noqa: PLC0415 - writes beside the journals, after they were read
 
-    tables.write(folder, time_to_alert_s=FLEET.time_to_alert_s)
+    tables.write(folder)
     statuses = Counter(pl.read_parquet(folder / "epochs.parquet")["status"].to_list())
     assert {labels: n for (name, labels), n in samples.items() if name == "navbound_epochs_total"} == {
         f'status="{status}"': n for status, n in statuses.items()

@@ -109,7 +109,7 @@ def test_recorded_approaches_have_the_bounds_alerts_and_events_of_the_batch(shar
         "alert": "alert",
     }
     assert differing(epochs, batch, pairs) == dict.fromkeys(pairs, 0)
-    reported = tables.transitions(tmp_path / "out", time_to_alert_s=10.0)
+    reported = tables.transitions(tmp_path / "out")
     raised = reported.filter(pl.col("transition") == "raised")
     events = run.events.with_columns(pl.col("track").str.replace_all("[ /]", "_"))
     expected = set(events.select("track", "kind", "annunciation_ns").rows())

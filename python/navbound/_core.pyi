@@ -124,7 +124,7 @@ class LiveSettings:
         motion: dict[str, float],
         path: Path | None,
         table: tuple[list[tuple[float, list[tuple[float, float]]]], list[tuple[str, Path | None, float | None]]],
-        claims: tuple[list[float], list[float], int],
+        claims: tuple[list[float], list[float], int, float | None],
         statements: tuple[list[tuple[list[str], list[str], float | None, float | None]], list[str], tuple[list[list[str]], list[float]]],
         times_ns: tuple[int, int, int],
         expiry_ns: int | None,

@@ -1,5 +1,6 @@
 //! What an aircraft claims of its own position, and the bounds that a claim stands for.
 
+use crate::assumed::circle;
 use navbound_core::quantity::Reason;
 
 /// Categories of a table: 0 to 11.
@@ -35,10 +36,8 @@ pub(crate) struct Bounds {
 }
 
 impl Bounds {
-    /// The same in every direction of the plane; nothing is known upwards.
     pub(crate) fn covariance_m2(self) -> [f64; 6] {
-        let variance = self.sigma_m * self.sigma_m;
-        [variance, 0.0, variance, f64::NAN, f64::NAN, f64::NAN]
+        circle(self.sigma_m * self.sigma_m)
     }
 }
 

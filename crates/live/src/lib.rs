@@ -9,6 +9,7 @@
 //! a track in order, judge them by [`navbound_core::judge::Judge`], find silences by the event time of the lane.
 //! docs/methods/live.md says what an alert means.
 
+mod assumed;
 pub mod balance;
 mod claims;
 mod codec;
@@ -29,6 +30,7 @@ mod split;
 mod track;
 mod zones;
 
+pub use assumed::Assumed;
 pub use claims::{CATEGORIES, Claim, Claims};
 pub use codec::Damaged;
 pub use counters::{Counters, Refused};

@@ -1,5 +1,6 @@
 //! How a lane is set.
 
+use crate::assumed::Assumed;
 use crate::claims::Claims;
 use crate::decode::{Format, Statements};
 use crate::position::TrackId;
@@ -49,6 +50,8 @@ pub struct Settings {
     pub of_stated_fte: Option<Alerting>,
     /// What an aircraft can do, by which the motion of positions is judged.
     pub motion: motion::Limits,
+    /// The accuracy of positions that state none; `None`: they have none.
+    pub assumed: Option<Assumed>,
     /// RNP value in force where a record states none.
     pub rnp: Metres,
     /// The path; without one the flight technical error is the record's own.

@@ -60,6 +60,7 @@ fn settings() -> Settings {
             settle_s: 30.0,
             period_s: 1.0,
         },
+        assumed: None,
         rnp: Metres::new(555.6),
         path: None,
         table: crate::Table::default(),

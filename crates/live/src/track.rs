@@ -36,6 +36,8 @@ pub(crate) struct Track {
     pub(crate) waiting: Waiting,
     /// Whether a record of it stated an RNP.
     pub(crate) states_rnp: bool,
+    /// The largest horizontal variance that it stated last, where one is assumed \[m²\].
+    pub(crate) stated_m2: Option<f64>,
     /// Whether its silence was noticed since the last record.
     pub(crate) silent: bool,
 }
@@ -54,6 +56,7 @@ impl Track {
             balance: Balance::default(),
             waiting: Waiting::default(),
             states_rnp: false,
+            stated_m2: None,
             silent: false,
         }
     }
@@ -143,6 +146,7 @@ impl Track {
         self.balance.write(to);
         self.waiting.write(to);
         to.flag(self.states_rnp);
+        to.option(self.stated_m2, Writer::f64);
         to.flag(self.silent);
     }
 
@@ -205,8 +209,8 @@ impl Track {
         };
         let neighbours = Neighbours { last: [from.option(place)?, from.option(place)?] };
         let (balance, waiting) = (Balance::read(from)?, Waiting::read(from)?);
-        let (states_rnp, silent) = (from.flag()?, from.flag()?);
-        Ok(Self { judge, incarnation, open, last, stepped, along, motion, neighbours, balance, waiting, states_rnp, silent })
+        let (states_rnp, stated_m2, silent) = (from.flag()?, from.option(Reader::f64)?, from.flag()?);
+        Ok(Self { judge, incarnation, open, last, stepped, along, motion, neighbours, balance, waiting, states_rnp, stated_m2, silent })
     }
 }
 

@@ -12,8 +12,8 @@ use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Risk};
 use navbound_live::balance;
 use navbound_live::journal::{self, Next};
 use navbound_live::{
-    Assigned, CATEGORIES, Claims, Course, EpochOut, Format, Input, Lane, Output, PlaceWords, Settings, Splitter, StatementRow, Statements,
-    Table, TrackId, Zone,
+    Assigned, Assumed, CATEGORIES, Claims, Course, EpochOut, Format, Input, Lane, Output, PlaceWords, Settings, Splitter, StatementRow,
+    Statements, Table, TrackId, Zone,
 };
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
@@ -45,7 +45,7 @@ struct LiveSettings(Settings);
 impl LiveSettings {
     /// `judging`: format, name of a receiver's track, method, method of a track that states a flight technical error. `risks`: accuracy, integrity. `monitor`: six times of the chain, raise delay,
     /// clear delay, clear ratio, stale time. `table`: areas, and what is assigned to tracks. `claims`: standard deviation by NACp, radius of
-    /// containment by NIC, least SIL. `statements`: kinds of statements of lines, words of a mode that is none, and parts of names of other places with how far these may be away. `times_ns`: lateness, ahead, retention.
+    /// containment by NIC, least SIL; standard deviation that the user states for positions without one. `statements`: kinds of statements of lines, words of a mode that is none, and parts of names of other places with how far these may be away. `times_ns`: lateness, ahead, retention.
     #[new]
     #[allow(clippy::too_many_arguments)]
     fn new(
@@ -56,7 +56,7 @@ impl LiveSettings {
         motion: &Bound<'_, PyDict>,
         path: Option<PyRef<'_, Path>>,
         table: (Vec<ZoneRow>, Vec<TrackRow<'_>>),
-        claims: ([f64; CATEGORIES], [f64; CATEGORIES], u8),
+        claims: ([f64; CATEGORIES], [f64; CATEGORIES], u8, Option<f64>),
         statements: (Vec<StatementRow>, Vec<String>, PlaceWords),
         times_ns: (i64, i64, i64),
         expiry_ns: Option<i64>,
@@ -88,13 +88,14 @@ impl LiveSettings {
             let id = TrackId::new(&name).ok_or_else(|| PyKeyError::new_err(name))?;
             of_tracks.insert(id, Assigned { path: path.map(|path| course(&path)), rnp: rnp_m.map(Metres::new) });
         }
-        let (sigma_m, containment_m, least_sil) = claims;
+        let (sigma_m, containment_m, least_sil, assumed_m) = claims;
         Ok(Self(Settings {
             format: Format::of(&format).ok_or_else(|| PyKeyError::new_err(format))?,
             track: TrackId::new(&track).ok_or_else(|| PyKeyError::new_err(track))?,
             judge,
             motion: Limits { period_s: sample_period_s, ..limits_of(motion)? },
             of_stated_fte: of_stated_fte.map(alerting).transpose()?,
+            assumed: assumed_m.map(|sigma_m| Assumed(Metres::new(sigma_m))),
             rnp: Metres::new(rnp_m),
             path: path.map(|path| course(&path)),
             table: Table { zones: zones.into_iter().map(zone).collect(), tracks: of_tracks },

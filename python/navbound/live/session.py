@@ -146,7 +146,7 @@ class Session:
             for written in (self._in, self._out):
                 if written.torn:
                     say(f"{written.path.name}: {written.torn} bytes of an unfinished frame were cut off")
-            self._events = Events(out, time_to_alert_s=settings.time_to_alert_s, say=say)
+            self._events = Events(out, settings, say=say)
             self._lane, position = self._restored()
             self._recover(position)
             # What is open stays open; before that it was given back.

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from navbound import _core, delays, rnp
-from navbound.errors import FormatError, InputError
+from navbound.errors import ConflictError, FormatError, InputError
 from navbound.live import statements, zones
 from navbound.live.zones import path_of
 from navbound.read.checks.plausible import Limits
@@ -25,6 +25,8 @@ UNDATED = ("beast", "avr")
 """Messages of Mode S: their time is that of their arrival."""
 FLEET = ("json", "readsb", *UNDATED)
 """What names its aircraft, many of them."""
+CLAIMED = ("readsb", *UNDATED)
+"""What states the accuracy of every aircraft in categories."""
 FORMATS = (*FLEET, *MESSAGES)
 """What a source may send: of many aircraft, or the messages of a receiver."""
 METHODS = ("tse-exact", "anp-circle")
@@ -49,6 +51,9 @@ class Settings:
         technical error, the second otherwise.
     track : str
         Name of a receiver's track.
+    sigma_m : float, optional
+        Standard deviation of each horizontal axis, the caller's claim, where the source states no accuracy; where it states one, or stated
+        one last, the larger counts. Not for ADS-B, whose aircraft claim their own. [m]
     risk_accuracy, risk_integrity : float
         Risks of the bounds that are compared with RNP and with twice RNP. [1]
     sample_period_s, time_to_alert_s, raise_delay_s, clear_delay_s, clear_ratio, stale_after_s : float
@@ -76,6 +81,7 @@ class Settings:
     path: str | None = None
     method: str = ""
     track: str = "receiver"
+    sigma_m: float | None = None
     risk_accuracy: float = 0.05
     risk_integrity: float = 1e-5
     sample_period_s: float = 1.0
@@ -100,6 +106,8 @@ class Settings:
             raise InputError("format", self.format, domain=f"one of {', '.join(FORMATS)}")
         if self.method and self.method not in METHODS:
             raise InputError("method", self.method, domain=f"one of {', '.join(METHODS)}")
+        if self.sigma_m is not None:
+            self._check_assumed(self.sigma_m)
         if not 0 < self.rnp_m < float("inf"):
             raise InputError("rnp_m", self.rnp_m, "m", "(0, inf)")
         for name in ("lateness_s", "ahead_s", "retention_s", "transport_s", "display_s"):
@@ -114,6 +122,21 @@ class Settings:
             raise InputError("expiry_s", self.expiry_s, "s", "(0, 1e9)")
         if not 0 < self.max_tracks <= 1_000_000:
             raise InputError("max_tracks", self.max_tracks, "1", "[1, 1000000]")
+
+    def _check_assumed(self, sigma_m: float) -> None:
+        if not 0 < sigma_m < float("inf"):
+            raise InputError("sigma_m", sigma_m, "m", "(0, inf)")
+        if self.format in CLAIMED:
+            raise ConflictError(
+                "sigma_m", because=f"aircraft state their own accuracy in {self.format}, and what they do not claim is not completed"
+            )
+
+    @property
+    def assumed(self) -> str:
+        """What the user assumes of the accuracy, in words; empty where nothing is."""
+        if self.sigma_m is None:
+            return ""
+        return f"assuming a sigma of {self.sigma_m:g} m in each axis, typed by the user, where the source states no larger accuracy"
 
     @property
     def methods(self) -> tuple[str, str]:
@@ -165,13 +188,14 @@ class Settings:
         except KeyError as e:
             raise InputError("track", self.track, domain="1 to 32 printable ASCII characters without blanks and '/'") from e
 
-    def _claims(self) -> tuple[list[float], list[float], int]:
-        """Standard deviation of an axis by NACp and radius of containment by NIC, and the least SIL whose risk is small enough. [m]."""
+    def _claims(self) -> tuple[list[float], list[float], int, float | None]:
+        """Standard deviation of an axis by NACp, radius of containment by NIC, least SIL whose risk is small enough, `sigma_m`. [m]."""
         sigma_of = nacp_sigma_m()
         sigma_m = [sigma_of.get(category, math.nan) for category in range(12)]
         sure = [level for level, risk in SIL_RISK.items() if risk <= self.risk_integrity]
         # A level above the highest is none: nothing is believed then.
-        return sigma_m, [NIC_RC_M.get(category, math.nan) for category in range(12)], min(sure, default=max(SIL_RISK) + 1)
+        radii = [NIC_RC_M.get(category, math.nan) for category in range(12)]
+        return sigma_m, radii, min(sure, default=max(SIL_RISK) + 1), self.sigma_m
 
     def changed(self, **values: Any) -> Settings:
         """The same but for some values."""

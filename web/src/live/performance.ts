@@ -108,7 +108,7 @@ export function tseBars(): Part {
     const show = (model: Model, now_s: number): void => {
         part.show(model, now_s);
         const session = model.snapshot?.session;
-        if (session !== undefined) say(note, `${session.method}: ${level(session.risk_accuracy)}, ${level(session.risk_integrity)}; the integrity bound is at least |deviation| + HPL.`);
+        if (session !== undefined) say(note, `${session.method}: ${level(session.risk_accuracy)}, ${level(session.risk_integrity)}; the integrity bound is at least |deviation| + HPL${session.assumed === "" ? "" : `; ${session.assumed}`}.`);
     };
     return { element: part.element, show };
 }

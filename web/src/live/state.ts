@@ -40,6 +40,8 @@ export interface Session {
     fields: string[];
     origin: { kind: "live" | "recording" | "replay"; source: string; speed: number | null; points: [number, number, number, number][]; limits: { name: string; hal_m: number; val_m: number | null } | null };
     rnp_m: number;
+    /** What the user states of the accuracy; empty where nothing is. */
+    assumed: string;
     path: string | null;
     method: string;
     risk_accuracy: number;

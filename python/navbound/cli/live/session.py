@@ -47,6 +47,9 @@ Level = Annotated[str | None, typer.Option(help="Service level whose alert limit
 Hook = Annotated[
     str | None, typer.Option("--webhook", help="Address that each transition is sent to: https://..., or http:// on this host.")
 ]
+Sigma = Annotated[
+    float | None, typer.Option(help="Stated standard deviation of the position per axis, where the source states no larger accuracy.")
+]
 SecretFile = Annotated[Path | None, typer.Option("--secret-file", help="File with the key of the signature of what is sent to --webhook.")]
 
 
@@ -66,6 +69,7 @@ def watch(
         str, typer.Option(help="tse-exact or anp-circle. [default: the first with --path or a track that states fte_m]")
     ] = "",
     track: Annotated[str, typer.Option(help="Name of a receiver's track.")] = "receiver",
+    sigma_m: Sigma = None,
     period_s: Annotated[float, typer.Option(help="Sample period of a track.")] = 1.0,
     time_to_alert_s: Annotated[float, typer.Option(help="Time to alert; a chain of times that is longer is refused.")] = TIME_TO_ALERT_S,
     raise_delay_s: Annotated[float, typer.Option(help="How long the accuracy bound is outside before the caution.")] = RAISE_DELAY_S,
@@ -93,6 +97,7 @@ def watch(
         path=path,
         method=method,
         track=track,
+        sigma_m=sigma_m,
         sample_period_s=period_s,
         time_to_alert_s=time_to_alert_s,
         raise_delay_s=raise_delay_s,
@@ -159,6 +164,8 @@ def _run(source: str, settings: Settings, ways: _Ways) -> None:
     _check_speed(ways.speed)
     lines, undated = settings.format in LINES, settings.format in UNDATED
     opened = live.open_source(source, lines=lines, undated=undated, chunk=512 if ways.speed else CHUNK)
+    if settings.assumed:
+        say(settings.assumed)
     stop = stop_requested()
     kind: Any = "live" if opened.live else "replay" if ways.replay else "recording"
     origin = live.Origin(kind, source, None if opened.live else ways.speed, points(settings, source), ways.limits)
@@ -284,6 +291,7 @@ def replay(
     spec: Annotated[str | None, typer.Option(help="Of a run or a log: as of `navbound live`. [default: RNP 0.3]")] = None,
     path: Course = None,
     form: Form = None,
+    sigma_m: Sigma = None,
     display: ShowDisplay = False,
     port: DisplayPort = 0,
     open_page: OpenPage = False,
@@ -299,12 +307,12 @@ def replay(
         raise InputError("group", group, "1", "[1, inf)")
     shown = _Screen(port if display or open_page else None, json=json, opened=open_page)
     if not is_journal(recording):
-        settings = _settings(str(recording), form, spec=spec or "RNP 0.3", path=path)
+        settings = _settings(str(recording), form, spec=spec or "RNP 0.3", path=path, sigma_m=sigma_m)
         _run(str(recording), settings, _Ways(out, speed, shown, limits=_limits(level), json=json, replay=True))
         return
-    if spec is not None or path is not None or form is not None:
-        one = "spec" if spec is not None else "path" if path is not None else "form"
-        raise ConflictError(one, because="a journal is judged with the settings of its session")
+    own = {"spec": spec, "path": path, "form": form, "sigma_m": sigma_m}
+    if given := [name for name, value in own.items() if value is not None]:
+        raise ConflictError(given[0], because="a journal is judged with the settings of its session")
     stop = stop_requested()
     with shown as screen:
         session = live.replay(
@@ -395,7 +403,7 @@ def _ended(session: Session, settings: Settings, *, json: bool) -> None:
 
     counters = session.counters()
     if session.n_epochs:
-        tables.write(session.folder, time_to_alert_s=settings.time_to_alert_s)
+        tables.write(session.folder)
     refused, unusable = (
         ", ".join(f"{n:g} {name.removeprefix(of)}" for name, n in counters.items() if name.startswith(of) and n)
         for of in ("refused_", "unusable_")
@@ -411,6 +419,8 @@ def _ended(session: Session, settings: Settings, *, json: bool) -> None:
         unreadable = not counters["n_records"] and not counters["refused_too_old"]
         why = f": nothing of the source is read as {settings.format}{needs}; --format names what it sends" if unreadable else ""
         sentence += f"; no epoch was judged{why}"
+    if settings.assumed:
+        sentence += f"; {settings.assumed}"
     if degraded := counters["n_degraded"]:
         sentence += f"; {degraded:g} epochs are degraded"
     if keys := session.passed_over():

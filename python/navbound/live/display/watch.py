@@ -174,7 +174,7 @@ class Watch:
             track.add(row)
 
     def _transitions(self, frames: bytes) -> list[dict[str, Any]]:
-        records = transition.records(frames, time_to_alert_s=self.settings.time_to_alert_s, origin=self.origin)
+        records = transition.records(frames, self.settings, origin=self.origin)
         shown = [shown_transition(record) for record in records]
         for each in shown:
             self.n_transitions += 1
@@ -232,6 +232,7 @@ class Watch:
             "fields": FIELDS,
             "origin": self.origin,
             "rnp_m": s.rnp_m,
+            "assumed": s.assumed,
             "path": s.path,
             "method": " or ".join(dict.fromkeys(s.methods)),
             "risk_accuracy": s.risk_accuracy,
@@ -271,7 +272,7 @@ class Watch:
             own += metrics.family(
                 "navbound_snapshot_age_seconds", "gauge", "Age of the snapshot.", {"": round(max(0.0, time.time() - written_s), 1)}
             )
-        return metrics.text([self.counts.lines(), self.taken.lines(), own])
+        return metrics.text([metrics.assumed_lines(self.settings), self.counts.lines(), self.taken.lines(), own])
 
     def snapshot(self, requested: str | None) -> dict[str, Any]:
         """Everything a page shows of one aircraft, and the alerts of all."""

@@ -7,6 +7,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from navbound import _core
+from navbound.live.settings import Settings
 from navbound.live.sinks import transition
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ class Reader:
     def __init__(self, transport: Transport) -> None:
         self._logs = [transport.went_out(lane) for lane in range(transport.n_lanes)]
         self._at = [0] * transport.n_lanes
-        self._limit_s = float(transport.record["settings"]["time_to_alert_s"])
+        self._settings = Settings(**transport.record["settings"])
         self._replayed = transport.record["origin"]["kind"] != "live"
 
     def more(self) -> list[dict[str, Any]]:
@@ -37,7 +38,7 @@ class Reader:
             frames = log.read(self._at[lane])
             self._at[lane] += len(frames)
             rows = _core.live_transitions(frames)
-            entry += [transition.record(row, time_to_alert_s=self._limit_s, replayed=self._replayed) for row in rows]
+            entry += [transition.record(row, self._settings, replayed=self._replayed) for row in rows]
         return entry
 
     @property

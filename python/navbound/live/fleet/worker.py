@@ -65,7 +65,7 @@ class Worker:
     def _took(self, rows: list[_core._TransitionRow]) -> None:
         for row in rows:
             self.n_transitions += 1
-            self._report(transition.record(row, time_to_alert_s=self.settings.time_to_alert_s, replayed=not self._live))
+            self._report(transition.record(row, self.settings, replayed=not self._live))
 
     def run(self, *, stop: Callable[[], bool] = lambda: False, finishing: Callable[[], bool] = lambda: False) -> None:
         """Work until `stop`.
@@ -156,7 +156,7 @@ class Worker:
         clear = now if turn == "cleared" else None
         times = (annunciation_ns, annunciation_ns, clear, now, None, now)
         row = ((key, None, 0, "feed_lost", turn), times, (float("nan"),) * 3, 0)
-        self._report(transition.record(row, time_to_alert_s=self.settings.time_to_alert_s, replayed=False))
+        self._report(transition.record(row, self.settings, replayed=False))
 
     def counters(self) -> dict[str, float]:
         """What the lanes that it has counted, together."""

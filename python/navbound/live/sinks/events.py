@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
+    from navbound.live.settings import Settings
+
 
 class Events:
     """The file of a session.
@@ -24,19 +26,19 @@ class Events:
     ----------
     folder : Path
         Of the session.
-    time_to_alert_s : float
-        That a latency is compared with. [s]
+    settings : Settings
+        How it judges.
     say : callable
         Takes a sentence on what was restored.
     """
 
-    def __init__(self, folder: Path, *, time_to_alert_s: float, say: Callable[[str], None]) -> None:
-        self._path, self._limit_s, self._say = folder / journal.EVENTS, time_to_alert_s, say
+    def __init__(self, folder: Path, settings: Settings, *, say: Callable[[str], None]) -> None:
+        self._path, self._settings, self._say = folder / journal.EVENTS, settings, say
         self._n_written = 0
 
     def records(self, rows: Sequence[_core._TransitionRow], *, replayed: bool) -> list[dict[str, Any]]:
         """Transitions as they are listed."""
-        return [transition.record(row, time_to_alert_s=self._limit_s, replayed=replayed) for row in rows]
+        return [transition.record(row, self._settings, replayed=replayed) for row in rows]
 
     def append(self, records: Sequence[dict[str, Any]]) -> None:
         """List some more."""

@@ -154,6 +154,12 @@ def family(name: str, kind: str, words: str, values: Mapping[str, float]) -> lis
     return [f"# HELP {name} {words}", f"# TYPE {name} {kind}", *rows] if rows else []
 
 
+def assumed_lines(settings: Settings) -> list[str]:
+    """What the user assumes of the accuracy, as Prometheus reads it; nothing where nothing is."""
+    values = {} if settings.sigma_m is None else {"": settings.sigma_m}
+    return family("navbound_assumed_sigma_metres", "gauge", "Standard deviation of each axis that the user stated.", values)
+
+
 def text(parts: Iterable[Iterable[str]]) -> str:
     """The whole answer."""
     build = family("navbound_build_info", "gauge", "Version.", {f'version="{__version__}"': 1})
@@ -174,8 +180,6 @@ def of(folder: Path) -> str:
     while behind:
         frames, behind = out.frames(), out.behind
         if frames:
-            counts.see(
-                _core.live_epochs(frames)["status"], transition.records(frames, time_to_alert_s=settings.time_to_alert_s, origin=origin)
-            )
+            counts.see(_core.live_epochs(frames)["status"], transition.records(frames, settings, origin=origin))
     taken.poll()
-    return text([counts.lines(), taken.lines()])
+    return text([assumed_lines(settings), counts.lines(), taken.lines()])

@@ -8,6 +8,7 @@ import polars as pl
 
 from navbound import _core
 from navbound.live import journal
+from navbound.live.settings import load
 from navbound.live.sinks import transition
 
 if TYPE_CHECKING:
@@ -16,29 +17,30 @@ if TYPE_CHECKING:
 SCHEMA = pl.Schema(
     dict.fromkeys(transition.FIELDS, pl.Int64)
     | dict.fromkeys(("key", "track", "kind", "transition"), pl.String())
-    | dict.fromkeys(("peak_m", "limit_m", "min_margin_m", "latency_s"), pl.Float64())
+    | dict.fromkeys(("peak_m", "limit_m", "min_margin_m", "latency_s", "sigma_m"), pl.Float64())
     | dict.fromkeys(("within_time_to_alert", "replayed"), pl.Boolean())
 )
 """Of the table of transitions, also where there are none."""
 
 
 def epochs(folder: Path) -> pl.DataFrame:
-    """Every record that was judged, in the order in which it was."""
+    """Every record that was judged, in the order in which it was; ``sigma_m`` is what the user stated where records state no accuracy."""
     columns = _core.live_epochs(journal.read(folder / journal.OUT))
     frame = pl.DataFrame({name: pl.Series(name, values, nan_to_null=True, strict=False) for name, values in columns.items()})
-    return frame.with_columns(pl.col("arrival_ns").cast(pl.Int64), pl.col("reason_id").cast(pl.String))
+    assumed = pl.lit(load(folder / journal.SETTINGS).sigma_m, pl.Float64).alias("sigma_m")
+    return frame.with_columns(pl.col("arrival_ns").cast(pl.Int64), pl.col("reason_id").cast(pl.String), assumed)
 
 
-def transitions(folder: Path, *, time_to_alert_s: float) -> pl.DataFrame:
+def transitions(folder: Path) -> pl.DataFrame:
     """Every alert that began or ended, in the order in which it did."""
-    rows = _core.live_transitions(journal.read(folder / journal.OUT))
-    records = [transition.record(r, time_to_alert_s=time_to_alert_s, replayed=False) for r in rows]
+    settings, rows = load(folder / journal.SETTINGS), _core.live_transitions(journal.read(folder / journal.OUT))
+    records = [transition.record(r, settings, replayed=False) for r in rows]
     return pl.DataFrame(records, schema=SCHEMA, infer_schema_length=None)
 
 
-def write(folder: Path, *, time_to_alert_s: float) -> None:
+def write(folder: Path) -> None:
     """Both as Parquet beside the journals."""
-    for name, frame in (("epochs", epochs(folder)), ("events", transitions(folder, time_to_alert_s=time_to_alert_s))):
+    for name, frame in (("epochs", epochs(folder)), ("events", transitions(folder))):
         partial = folder / f"{name}.parquet.partial"
         frame.write_parquet(partial, compression="zstd")
         partial.replace(folder / f"{name}.parquet")

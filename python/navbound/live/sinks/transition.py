@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from navbound._core import _TransitionRow
+    from navbound.live.settings import Settings
 
 VERSION = 1
 FIELDS = (
@@ -34,10 +35,11 @@ FIELDS = (
     "within_time_to_alert",
     "replayed",
     "position",
+    "sigma_m",
 )
 
 
-def record(row: _TransitionRow, *, time_to_alert_s: float, replayed: bool) -> dict[str, Any]:
+def record(row: _TransitionRow, settings: Settings, *, replayed: bool) -> dict[str, Any]:
     """One transition. What is not known is None; a latency is claimed only where the arrival is known."""
     names, times, lengths, position = row
     key, track, incarnation, kind, turn = names
@@ -46,15 +48,15 @@ def record(row: _TransitionRow, *, time_to_alert_s: float, replayed: bool) -> di
     peak, limit, margin = (None if math.isnan(x) else x for x in lengths)
     values = (
         *(VERSION, key, track, incarnation, kind, turn, annunciation, onset, clear, event, arrival, emitted, peak, limit, margin),
-        *(latency_s, None if latency_s is None else latency_s <= time_to_alert_s, replayed, position),
+        *(latency_s, None if latency_s is None else latency_s <= settings.time_to_alert_s, replayed, position, settings.sigma_m),
     )
     return dict(zip(FIELDS, values, strict=True))
 
 
-def records(frames: bytes, *, time_to_alert_s: float, origin: Mapping[str, Any]) -> list[dict[str, Any]]:
+def records(frames: bytes, settings: Settings, *, origin: Mapping[str, Any]) -> list[dict[str, Any]]:
     """Every transition of whole frames of a journal out; those of data that did not arrive just then are replayed."""
     replayed = origin["kind"] != "live"
-    return [record(row, time_to_alert_s=time_to_alert_s, replayed=replayed) for row in _core.live_transitions(frames)]
+    return [record(row, settings, replayed=replayed) for row in _core.live_transitions(frames)]
 
 
 def line(transition: dict[str, Any]) -> str:

@@ -189,7 +189,7 @@ class Webhook:
         return self._ended
 
     def _records(self, frames: bytes) -> list[dict[str, Any]]:
-        return transition.records(frames, time_to_alert_s=self._settings.time_to_alert_s, origin=self._origin) if frames else []
+        return transition.records(frames, self._settings, origin=self._origin) if frames else []
 
     def run(self, *, stop: Callable[[], bool], until_end: bool = True) -> None:
         """Send until `stop`, until the session ended and everything was taken, or until the server wants no more.

@@ -302,7 +302,7 @@ _OF_MOTION = ("est_h_m", "altitude_m", "ground_speed_mps", "ground_track_rad", "
 
 
 def expected(rows: pl.DataFrame, *, empty: pl.Expr, besides: Sequence[str]) -> pl.DataFrame:
-    """Track and time of rows without an epoch, and whether each is ``silent``: its position is `empty`, and it states nothing but motion."""
+    """Track and time of rows without an epoch, and whether each is ``silent``: without a position, and stating nothing but motion."""
     passed = {"track", "time_ns", "status", "est_lat_rad", "est_lon_rad", *_OF_MOTION, *besides}
     others = [pl.col(name).is_null() for name in rows.columns if name not in passed]
     fine = [(pl.col("status") == "ok").fill_null(value=True)] if "status" in rows.columns else []

@@ -218,7 +218,7 @@ def _not_empty(source: Source, out: pl.DataFrame, rejections: Rejections) -> Non
 def _in_order(
     out: pl.DataFrame, rejections: Rejections, notes: list[str], *, whole_seconds: bool = False, usual: int = 1
 ) -> tuple[pl.DataFrame, pl.DataFrame]:
-    """One row an instant, in the order of time; a repeated instant of a track is left out and counted. Second: rows that cannot be judged."""
+    """One row an instant, in the order of time; repeated ones are left out and counted. Second: those that cannot be judged."""
     # Those of a table are null already.
     out, without = levels.without_bound(out)
     for name, at in without.items():
