@@ -58,7 +58,7 @@ def test_of_two_accuracies_the_larger_counts(tmp_path: Path) -> None:
     assert epochs["cov_nn_m2"].sqrt().to_list() == pytest.approx(expected)
 
 
-def test_a_receiver_that_falls_silent_is_no_better_than_it_said_last(tmp_path: Path) -> None:
+def test_a_receiver_that_falls_silent_is_no_better_than_its_last_statement(tmp_path: Path) -> None:
     epochs = watched(tmp_path, {29: 400.0})
     assert epochs["cov_nn_m2"].sqrt().to_list() == pytest.approx([SIGMA_M] * 29 + [400.0] * 31)
     assert set(epochs["alert"][40:]) == {"warning"}

@@ -14,9 +14,11 @@ import polars as pl
 import pytest
 
 import report_fixture
+from navbound import write
 from navbound.errors import InputError
 from navbound.report import coast, packing, payload, render
 from navbound.report.render import script_safe
+from navbound.time import utc_text
 
 _NULL, _ZERO = -(2**31), -(2**31) + 1
 
@@ -158,6 +160,18 @@ def test_a_track_holds_the_columns_of_the_table(tmp_path: Path) -> None:
     column = head["columns"][i]
     packed = packing.Packed("fte_m", column["kind"], column["resolution"], column["offset"], column["order"], raw[200 * i : 200 * (i + 1)])
     np.testing.assert_allclose(_unpack(packed), fixture.epochs["fte_m"].to_numpy(), rtol=0, atol=0.5001e-3)
+
+
+def test_the_page_cuts_its_lines_where_the_exports_cut_them() -> None:
+    fixture = report_fixture.flight(n=50)
+    epochs = (
+        fixture.epochs.sort("time_ns").with_row_index().filter(~pl.col("index").is_between(10, 19) & (pl.col("index") != 40)).drop("index")
+    )
+    page = payload.build(fixture.summary, fixture.record, epochs, fixture.events, [])
+    starts = [each.properties["from_utc"] for each in write.shapes(epochs)]
+    after = [utc_text(epochs["time_ns"][k + 1]) for k in page.data["tracks"][0]["breaks"]]
+    assert len(after) == 1
+    assert set(after) <= set(starts)
 
 
 def test_a_two_hour_flight_stays_below_two_megabytes(tmp_path: Path) -> None:

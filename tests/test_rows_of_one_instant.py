@@ -1,4 +1,4 @@
-"""Several rows of a track at one time: messages of one instant are one epoch; what cannot be told apart is not judged."""
+"""Several rows of a track at one time: messages of one instant are one epoch; what contradicts itself is not judged."""
 
 from __future__ import annotations
 

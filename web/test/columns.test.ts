@@ -4,7 +4,7 @@ import type { PackedTrack } from "../src/data/records.ts";
 import { Table } from "../src/data/table.ts";
 
 test("a chart that asks for a column which no report carries does not pass the type check", () => {
-    const head: PackedTrack = { track: "a", n: 1, start_ns: "0", columns: [], words: {}, block: 0 };
+    const head: PackedTrack = { track: "a", n: 1, start_ns: "0", breaks: [], columns: [], words: {}, block: 0 };
     const table = new Table(head, new Map([["fte_m", new Float64Array([1])], ["separation_m", new Float64Array([2])]]), 0);
     assert.deepEqual([...table.column("fte_m")!], [1]);
     assert.deepEqual([...table.column("separation_m")!], [2]);

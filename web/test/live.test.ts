@@ -9,7 +9,7 @@ function snapshot(over: Partial<Snapshot> = {}): Snapshot {
         client: 1, track: "F1", tracks: ["F1"], rows: [[1000, "ok", "normal", 555.6, null]], open: [], events: [], n_transitions: 0, acknowledged: [],
         status: { feed: "live", ages_s: { F1: 0.1 }, silent_s: 0, trouble: null, n_hidden: 0 },
         session: {
-            run: "r", fields: FIELDS, origin: { kind: "live", source: "tcp://a:1", speed: null, points: [], limits: null }, rnp_m: 555.6, path: null, method: "tse-exact", risk_accuracy: 0.05, risk_integrity: 1e-5,
+            run: "r", fields: FIELDS, origin: { kind: "live", source: "tcp://a:1", speed: null, points: [], limits: null }, rnp_m: 555.6, assumed: "", path: null, method: "tse-exact", risk_accuracy: 0.05, risk_integrity: 1e-5,
             sample_period_s: 1, stale_s: 2, monitor_stale_s: 2, time_to_alert_s: 10, chain: {}, reasons: {},
         },
         ...over,

@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn a_source_that_states_no_more_is_no_better_than_it_said_last() {
+    fn a_source_that_states_no_more_is_no_better_than_its_last_statement() {
         let mut stated = None;
         let _ = completed(Some(circle(10_000.0)), &mut stated);
         assert_eq!(plane(completed(None, &mut stated)), [10_000.0, 0.0, 10_000.0]);

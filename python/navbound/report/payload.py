@@ -14,6 +14,7 @@ import polars as pl
 from navbound.gnss.receivers import FATES
 from navbound.report import packing, sky
 from navbound.report.coast import airports, clip_coastline, clip_land, grid_region
+from navbound.rnp.usual import breaks
 from navbound.storage.tables import pieces
 from navbound.table import lookup
 from navbound.time import GPS_EPOCH_UNIX_NS, utc_offset_s
@@ -226,6 +227,7 @@ def _pack_track(track: str, frame: pl.DataFrame, columns: list[str]) -> tuple[di
         "n": frame.height,
         # As text: nanoseconds since 1980 do not fit a number of the page exactly.
         "start_ns": str(start_ns),
+        "breaks": breaks(frame["time_ns"].to_numpy()).tolist(),
         "columns": [p.head() for p in packed],
         "words": words,
     }

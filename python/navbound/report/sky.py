@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from navbound.report import packing
+from navbound.rnp.usual import breaks
 
 if TYPE_CHECKING:
     from navbound.report.packing import Packed
@@ -43,6 +44,8 @@ def pack(heard: pl.DataFrame | None) -> Sky:
                 "track": track,
                 "n": kept.height,
                 "start_ns": str(start_ns),
+                # Of the epochs, at each of which several satellites are heard.
+                "breaks": breaks(kept["time_ns"].unique().sort().to_numpy()).tolist(),
                 "columns": [p.head() for p in packed],
                 "words": {name: packing.run_lengths(kept[name]) for name in _WORDS},
             }

@@ -70,6 +70,12 @@ def period_s(steps_ns: NDArray[np.int64]) -> float:
     return usual * 1e-3 if 0 < absent_in(steps) < _MOST else median_s
 
 
+def breaks(times_ns: NDArray[np.int64]) -> NDArray[np.intp]:
+    """Epochs of a recording, in the order of time, after which so much time passes that nothing is known before the next one."""
+    steps_ns = np.diff(times_ns)
+    return np.flatnonzero(steps_ns > 1e9 * stale_after_s(period_s(steps_ns.copy())))
+
+
 def stale_after_s(of_period_s: float) -> float:
     """Time after an epoch of a recording from which the monitor has nothing. [s]."""
     from navbound.rnp import Monitor  # noqa: PLC0415  (which imports the modules of this folder)

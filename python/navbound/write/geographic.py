@@ -15,7 +15,7 @@ import numpy as np
 import polars as pl
 
 from navbound.errors import FormatError, InputError
-from navbound.rnp.usual import period_s, stale_after_s
+from navbound.rnp.usual import breaks
 from navbound.status import USABLE
 from navbound.table.arguments import checked
 from navbound.table.columns import HORIZONTAL
@@ -196,8 +196,7 @@ def _lines(epochs: pl.DataFrame, names: tuple[str, str], states: pl.Series, prop
     lon, lat = (epochs[name].to_list() for name in names)
     heights = epochs["est_h_m"].to_list() if names[0].startswith("est") and "est_h_m" in epochs.columns else [None] * epochs.height
     times, known = epochs["time_ns"].to_list(), states.to_list()
-    steps_ns = np.diff(epochs["time_ns"].to_numpy())
-    gaps = {int(k) + 1 for k in np.flatnonzero(steps_ns > 1e9 * stale_after_s(period_s(steps_ns.copy())))}
+    gaps = {int(k) + 1 for k in breaks(epochs["time_ns"].to_numpy())}
     begin = 0
     for k in range(1, len(known) + 1):
         if k < len(known) and known[k] == known[begin] and k not in gaps:

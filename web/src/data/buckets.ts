@@ -30,7 +30,7 @@ export function bucketTable(performance: Performance, payload: Payload): Table {
     const numbers = new Map<string, Float64Array>(NUMBERS.map((name) => [name, column((i) => series[name][i] ?? null)]));
     numbers.set("elapsed_s", Float64Array.from(rows, (i, k) => (i === null ? (series.start_ns[rows[k - 1]!]! - first + series.width_ns) / 1e9 : (series.start_ns[i]! - first) / 1e9)));
     for (const { level } of performance.levels) numbers.set(unavailableOf(level.id), column((i) => 1 - (series.n_available[level.id]?.[i] ?? 0) / series.n_expected[i]!));
-    const head: PackedTrack = { track: BUCKETS, n: rows.length, start_ns: String(first), columns: [], words: {}, block: -1 };
+    const head: PackedTrack = { track: BUCKETS, n: rows.length, start_ns: String(first), breaks: [], columns: [], words: {}, block: -1 };
     const words = new Map<string, (string | null)[]>(performance.levels.map(({ level }) => [causeOf(level.id), rows.map((i) => (i === null ? null : series.cause[level.id]?.[i] || AVAILABLE))]));
     words.set("status", rows.map((i) => (i !== null && series.n_solution[i] === 0 ? "not_available" : "ok")));
     words.set("reason", rows.map((i) => (i !== null && series.n_solution[i] === 0 ? "no solution" : null)));

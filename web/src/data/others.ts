@@ -8,6 +8,8 @@ export interface Ground {
     track: string;
     lat_rad: Float64Array;
     lon_rad: Float64Array;
+    /** Epochs after which no line goes on. */
+    breaks: number[];
 }
 
 /** Text block of an embedded track. */
@@ -25,5 +27,5 @@ export function groundTracks(payload: Payload): Store<Ground[]> {
 async function ground(head: PackedTrack): Promise<Ground | null> {
     const columns = unpack(await inflate(blockOf(head)), head.columns, head.n, ["est_lat_rad", "est_lon_rad"]);
     const [lat_rad, lon_rad] = [columns.get("est_lat_rad"), columns.get("est_lon_rad")];
-    return lat_rad === undefined || lon_rad === undefined ? null : { track: head.track, lat_rad, lon_rad };
+    return lat_rad === undefined || lon_rad === undefined ? null : { track: head.track, lat_rad, lon_rad, breaks: head.breaks };
 }

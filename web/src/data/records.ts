@@ -25,6 +25,8 @@ export interface PackedTrack {
     track: string;
     n: number;
     start_ns: string;
+    /** Epochs after which so much time passes without one that no line may cross it. */
+    breaks: number[];
     columns: PackedColumn[];
     words: Record<string, { words: string[]; runs: [number, number][] }>;
     block: number;

@@ -15,15 +15,6 @@ function expanded(head: PackedTrack): Map<string, (string | null)[]> {
     return new Map(Object.entries(head.words).map(([name, packed]) => [name, expand(packed.words, packed.runs)]));
 }
 
-/** Steps of more than three times the usual one. */
-const BREAK = 3;
-
-export function breaksOf(elapsed_s: Float64Array): number[] {
-    const steps = Float64Array.from({ length: Math.max(0, elapsed_s.length - 1) }, (_, i) => elapsed_s[i + 1]! - elapsed_s[i]!);
-    const usual = steps.slice().sort()[Math.floor(steps.length / 2)] ?? Infinity;
-    return [...steps.keys()].filter((i) => steps[i]! > BREAK * usual);
-}
-
 export class Table {
     readonly n: number;
     readonly track: string;
@@ -46,7 +37,7 @@ export class Table {
         this.start_utc_s = start_utc_s;
         this.words = words;
         this.unavailable = this.findUnavailable();
-        this.breaks = breaksOf(this.elapsed_s);
+        this.breaks = head.breaks;
     }
 
     static async open(payload: Payload, head: PackedTrack, base64: string): Promise<Table> {

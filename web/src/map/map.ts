@@ -6,8 +6,8 @@ import { missing } from "../chart/missing.ts";
 import { button, el, freshId } from "../show/dom.ts";
 import { level, nauticalMiles, place, wholeMetres } from "../show/format.ts";
 import { metresPerRadian, roundDown } from "./geometry.ts";
-import { paintCursor, paintStill, pixelsPerMetre, toScreen, type View } from "./paint.ts";
-import { shapes as shapesOf, type Line, type Shapes } from "./shapes.ts";
+import { paintCursor, paintStill, pixelsPerMetre, toScreen, type Flown, type View } from "./paint.ts";
+import { shapes as shapesOf, type Shapes } from "./shapes.ts";
 import { gestures } from "./gestures.ts";
 
 const CLOSEST_PX_PER_M = 40;
@@ -25,7 +25,7 @@ export function map(host: HTMLElement, scene: Scene): () => void {
     surface.append(bar);
     const view: View = { x: 0, y: 0, k: 1, width: 0, height: 0 };
     let fitted = 1;
-    let others: Line[] = [];
+    let others: Flown[] = [];
 
     const paint = (): void => {
         const pen = begun(still, view);
@@ -90,7 +90,7 @@ export function map(host: HTMLElement, scene: Scene): () => void {
         else paint();
     };
     const showOthers = (grounds: Ground[]): void => {
-        others = grounds.filter((g) => g.track !== scene.table.track).map((g) => shapes.put(g.lat_rad, g.lon_rad));
+        others = grounds.filter((g) => g.track !== scene.table.track).map((g) => ({ line: shapes.put(g.lat_rad, g.lon_rad), breaks: new Set(g.breaks) }));
         surface.dataset.others = String(others.length);
         otherKey.hidden = others.length === 0;
         if (others.length > 0) paint();

@@ -26,6 +26,31 @@ export function toScreen(view: View, x: number, y: number): [number, number] {
     return [(x - view.x) * view.k + view.width / 2, (y - view.y) * view.k + view.height / 2];
 }
 
+/** A line of positions, point by point; nothing is drawn from a break to the point after it. */
+export interface Flown {
+    line: Line;
+    breaks: Set<number>;
+}
+
+/** The line in pieces, each without a break; a point that is a piece of its own is drawn as a dot by the round ends of the pen. */
+export function traceFlown(pen: CanvasRenderingContext2D, view: View, { line, breaks }: Flown, from = 0, to = line.length / 2 - 1): void {
+    let begin = from;
+    for (let i = from; i <= to; i++) {
+        if (i < to && !breaks.has(i)) continue;
+        if (i > begin) trace(pen, view, line, begin, i);
+        else if ((i === 0 || breaks.has(i - 1)) && (breaks.has(i) || i === to)) dot(pen, view, line, i);
+        begin = i + 1;
+    }
+}
+
+function dot(pen: CanvasRenderingContext2D, view: View, line: Line, i: number): void {
+    const [x, y] = toScreen(view, line[2 * i]!, line[2 * i + 1]!);
+    if (!Number.isFinite(x)) return;
+    pen.moveTo(x, y);
+    // A line without a length is not drawn.
+    pen.lineTo(x + 0.1, y);
+}
+
 export function trace(pen: CanvasRenderingContext2D, view: View, line: Line, from = 0, to = line.length / 2 - 1): void {
     let drawn: [number, number] | null = null;
     let pen_at: [number, number] | null = null;
@@ -62,7 +87,7 @@ export function stroke(pen: CanvasRenderingContext2D, style: { colour: string; w
     pen.restore();
 }
 
-export function paintStill(pen: CanvasRenderingContext2D, view: View, shapes: Shapes, others: Line[], scene: Scene): void {
+export function paintStill(pen: CanvasRenderingContext2D, view: View, shapes: Shapes, others: Flown[], scene: Scene): void {
     fillLand(pen, view, shapes.land);
     stroke(pen, { colour: colour("rule"), width: 1 }, () => shapes.graticule.forEach((line) => trace(pen, view, line)));
     stroke(pen, { colour: colour("coast"), width: 1 }, () => shapes.coast.forEach((line) => trace(pen, view, line)));
@@ -72,7 +97,7 @@ export function paintStill(pen: CanvasRenderingContext2D, view: View, shapes: Sh
         stroke(pen, { colour: colour("limit"), width: 1.25 }, () => one.forEach((edge) => trace(pen, view, edge)));
     }
     if (shapes.path !== null) stroke(pen, { colour: colour("path"), width: 3, alpha: 0.55 }, () => trace(pen, view, shapes.path!));
-    stroke(pen, { colour: colour("muted"), width: 1, alpha: 0.45 }, () => others.forEach((line) => trace(pen, view, line)));
+    stroke(pen, { colour: colour("muted"), width: 1, alpha: 0.45 }, () => others.forEach((flown) => traceFlown(pen, view, flown)));
     paintTrack(pen, view, shapes, scene);
     paintEvents(pen, view, shapes, scene);
     paintNames(pen, view, shapes);
@@ -99,13 +124,14 @@ function fillLand(pen: CanvasRenderingContext2D, view: View, land: Line[]): void
 }
 
 function paintTrack(pen: CanvasRenderingContext2D, view: View, shapes: Shapes, scene: Scene): void {
-    stroke(pen, { colour: colour("ink"), width: 1.25 }, () => trace(pen, view, shapes.track));
+    const flown: Flown = { line: shapes.track, breaks: new Set(scene.table.breaks) };
+    stroke(pen, { colour: colour("ink"), width: 1.25 }, () => traceFlown(pen, view, flown));
     const alert = scene.table.wordColumn("alert");
     if (alert === undefined) return;
     for (const run of runsOf(alert)) {
         // One epoch further, so that a single epoch has a length.
         const [from, to] = [Math.max(0, run.from - 1), run.to];
-        const over = (style: Parameters<typeof stroke>[1]): void => stroke(pen, style, () => trace(pen, view, shapes.track, from, to));
+        const over = (style: Parameters<typeof stroke>[1]): void => stroke(pen, style, () => traceFlown(pen, view, flown, from, to));
         if (run.label === "caution") over({ colour: colour("caution"), width: 3.5 });
         if (run.label === "warning") over({ colour: colour("warning"), width: 5 });
         if (run.label === "unavailable") {
