@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 import signal
 import subprocess
 import sys
@@ -16,6 +17,7 @@ import pytest
 
 import navbound
 from navbound import FormatError, InputError, gnss, kpi
+from navbound.errors import UnpairedError
 from navbound.exit_status import NO_VERDICT
 from navbound.run import directory
 from navbound.run.evaluate.performance import CSV, PARTS
@@ -242,8 +244,15 @@ def test_a_part_whose_content_was_changed_is_not_taken(tmp_path: Path, harm: str
 
 
 def test_observations_alone_are_refused(shared_data: Path) -> None:
-    with pytest.raises(InputError, match="navigation file"):
-        navbound.evaluate(shared_data / "sbas" / "virtual_user_2025046_17h.25O.gz", levels="NPA")
+    file = shared_data / "sbas" / "virtual_user_2025046_17h.25O.gz"
+    with pytest.raises(UnpairedError) as refused:
+        navbound.evaluate(file, levels="NPA")
+    assert str(refused.value).startswith(
+        f"{file} holds observations and no orbits: name a RINEX navigation file of the same time beside it"
+    )
+    assert "is not accepted" not in str(refused.value)
+    again = pickle.loads(pickle.dumps(refused.value))
+    assert (str(again), again.argument, again.value) == (str(refused.value), "files", file)
 
 
 def errors_and_levels(path: Path, *names: str) -> Path:

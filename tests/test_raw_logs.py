@@ -186,7 +186,7 @@ def test_levels_follow_from_a_log_alone(shared_data: Path, tmp_path: Path) -> No
 
 def test_a_log_without_orbits_says_what_is_lacking(shared_data: Path, tmp_path: Path) -> None:
     log = shared_data / "rxlogs" / "gpsd" / "ublox-zed-f9p_hpg1.11.log"
-    with pytest.raises(InputError, match="together with a RINEX navigation file"):
+    with pytest.raises(InputError, match="holds observations and no orbits: name a RINEX navigation file"):
         navbound.analyze(log, solve=True)
     with pytest.raises(InputError, match="raw measurements"):
         navbound.analyze(shared_data / "rxlogs" / "gpsd" / "ublox-zed-f9p-nmea.log", solve=True)

@@ -95,6 +95,29 @@ class ConflictError(InputError):
         return _rebuilt, (type(self), (self.argument,), more)
 
 
+class UnpairedError(InputError):
+    """A file that says nothing without another one.
+
+    Attributes
+    ----------
+    because : str
+        What it holds and which other file it needs, as the rest of a sentence.
+    """
+
+    def __init__(self, argument: str, value: object, because: str) -> None:
+        self.because = because
+        super().__init__(argument, value)
+
+    def words(self, name: Callable[[str], str]) -> str:
+        """The sentence: a file says what it is by its own name."""
+        del name
+        return f"{self.value} {self.because}"
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """From its parts, as that of :class:`InputError`."""
+        return type(self), (self.argument, self.value, self.because)
+
+
 class NotFoundError(InputError):
     """A name that nothing has.
 

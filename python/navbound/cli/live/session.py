@@ -311,8 +311,8 @@ def replay(
         _run(str(recording), settings, _Ways(out, speed, shown, limits=_limits(level), json=json, replay=True))
         return
     own = {"spec": spec, "path": path, "form": form, "sigma_m": sigma_m}
-    if given := [name for name, value in own.items() if value is not None]:
-        raise ConflictError(given[0], because="a journal is judged with the settings of its session")
+    if declared := [name for name, value in own.items() if value is not None]:
+        raise ConflictError(declared[0], because="a journal is judged with the settings of its session")
     stop = stop_requested()
     with shown as screen:
         session = live.replay(

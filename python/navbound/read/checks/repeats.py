@@ -77,8 +77,8 @@ class Repeats:
     @property
     def unjudged(self) -> pl.DataFrame:
         """Rows left out of which each is an epoch that is expected and cannot be judged."""
-        found = [self.kinds[words] for words in UNJUDGED if words in self.kinds]
-        return pl.concat(found) if found else self.epochs.clear()
+        unjudged = [self.kinds[words] for words in UNJUDGED if words in self.kinds]
+        return pl.concat(unjudged) if unjudged else self.epochs.clear()
 
 
 IDENTICAL = ""
@@ -162,8 +162,8 @@ def separate(epochs: pl.DataFrame, *, whole_seconds: bool = False, usual: int = 
         .otherwise(pl.lit(IDENTICAL))
     )
     kinds = repeated.with_columns(words.alias("__kind")).drop(_MARKS)
-    found = {name: kinds.filter(pl.col("__kind") == name).drop("__kind") for name in (IDENTICAL, *UNJUDGED, EARLIER)}
-    return Repeats(kept, {name: rows for name, rows in found.items() if not rows.is_empty()})
+    rows_of = {name: kinds.filter(pl.col("__kind") == name).drop("__kind") for name in (IDENTICAL, *UNJUDGED, EARLIER)}
+    return Repeats(kept, {name: rows for name, rows in rows_of.items() if not rows.is_empty()})
 
 
 def _completed(epochs: pl.DataFrame, key: list[str]) -> pl.DataFrame:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from navbound import _core
-from navbound.errors import ConflictError, InputError
+from navbound.errors import ConflictError, UnpairedError
 from navbound.read.source import Source, load
 
 if TYPE_CHECKING:
@@ -36,15 +36,17 @@ class Files:
 
         Raises
         ------
-        InputError
+        UnpairedError
             Naming the file and what is lacking.
         """
         if self.observations and not self.navigation:
-            domain = "observations together with a RINEX navigation file" + self._taken_for_tables()
-            raise InputError("files", f"{self.observations[0].path}", domain=domain)
+            first = self.observations[0].path
+            why = "holds observations and no orbits: name a RINEX navigation file of the same time beside it"
+            raise UnpairedError("files", first, f"{why} ({first.name} NAVIGATION_FILE){self._taken_for_tables()}")
         if not self.observations and (self.navigation or self.messages):
-            domain = "them together with RINEX observations" + self._taken_for_tables()
-            raise InputError("files", f"{(self.navigation + self.messages)[0].path}", domain=domain)
+            first = (self.navigation + self.messages)[0].path
+            why = "holds no observations and no positions: name a RINEX observation file of the same time beside it"
+            raise UnpairedError("files", first, f"{why} (OBSERVATION_FILE {first.name}){self._taken_for_tables()}")
 
     def _taken_for_tables(self) -> str:
         names = ", ".join(str(source.path) for source in self.tables)
