@@ -223,7 +223,7 @@ class _OfText(_FirstPass):
             if not rows_begin.any():
                 return
             lines = lines[int(rows_begin.arg_max() or 0) :]
-            self._layout = layout_of(self.path, lines)
+            self._layout = layout_of(self.path, lines, (self._columns or {}).values())
             self.named(self._layout.columns, rows_of(self.path, self._layout, lines[1:]).frame)
             with self.path.open("rb") as file:
                 require_same_in_remarks(file.read(HEAD_BYTES).decode("utf-8", "replace"), self.mapping, self.path)

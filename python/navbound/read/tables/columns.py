@@ -306,8 +306,8 @@ _ALL_UNITS = frozenset(unit for units in UNITS.values() for unit in units if uni
 
 @functools.lru_cache(maxsize=1024)
 def _plain(name: str) -> tuple[str, str | None]:
-    """``Latitude (deg)`` and ``Latitude / deg`` to ``latitude`` and ``deg``."""
-    stem, unit = name.strip(), None
+    """``Latitude (deg)`` and ``Latitude / deg`` to ``latitude`` and ``deg``; of a name that stands twice both columns are it."""
+    stem, unit = re.sub(r"#\d{1,3}$", "", name).strip(), None
     if stem.endswith((")", "]")):
         # By searches and no pattern: one with several runs of blanks takes quadratic time.
         inside = stem[:-1]

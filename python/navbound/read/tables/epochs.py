@@ -120,7 +120,7 @@ def _read(
         if columns:
             reading.notes.append(f"Columns named by the caller change nothing in {source.path.name}, whose format names its own.")
         return reading
-    content = table(source)
+    content = table(source, (columns or {}).values())
     if beside:
         # A file of the truth may call its positions so.
         columns = truth_as_position(content.columns) | dict(columns or {})

@@ -16,6 +16,7 @@ from navbound.errors import FormatError
 from navbound.read.checks.rejections import Rejections
 from navbound.read.checks.statements import alarms
 from navbound.read.tables import readsb
+from navbound.read.tables.columns import declare
 from navbound.read.tables.memory import require_free
 from navbound.storage import packed
 
@@ -67,28 +68,35 @@ class Table:
         return [c for c in self.frame.columns if c != LINE]
 
 
-def table(source: Source) -> Table:
+def table(source: Source, declared: Iterable[str] = ()) -> Table:
     """Take a CSV, JSON or Parquet file apart.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+    declared : iterable of str
+        ``column`` or ``column:unit`` as a caller declares them; ``column#2`` is the second column of a name that stands twice.
 
     Raises
     ------
     FormatError
         The file is none of these, has no rows, or its columns differ in length.
     """
-    content = {"csv": _csv, "json": _json, "parquet": _parquet}[source.kind](source)
+    content = _csv(source, declared) if source.kind == "csv" else {"json": _json, "parquet": _parquet}[source.kind](source)
     if content.n_rows == 0:
         raise FormatError(source.path, "no rows below the header")
     content.rejections.refuse_if_too_many(content.n_rows)
     return content
 
 
-def _csv(source: Source) -> Table:
+def _csv(source: Source, declared: Iterable[str]) -> Table:
     """Text lines with a separator; lines with another number of fields than the header are left out and counted."""
     require_free(source, source.content.count(b"\n"))
     lines = lines_of(source.text(), 1)
     if lines.is_empty():
         raise FormatError(source.path, "nothing but comments")
-    layout = layout_of(source.path, lines)
+    layout = layout_of(source.path, lines, declared)
     rows = rows_of(source.path, layout, lines[1:])
     rejections = Rejections(source.path)
     if rows.bad is not None:
@@ -172,8 +180,8 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def layout_of(path: Path, lines: pl.DataFrame) -> Layout:
-    """Separator and names of the first of these lines.
+def layout_of(path: Path, lines: pl.DataFrame, declared: Iterable[str] = ()) -> Layout:
+    """Separator and names of the first of these lines; `declared` as for :func:`table`.
 
     Raises
     ------
@@ -189,7 +197,7 @@ def layout_of(path: Path, lines: pl.DataFrame) -> Layout:
     if separator not in header and len(header.split()) > 2:
         what = f"no {_SEPARATOR_WORDS} in “{header[:60]}”: blanks separate no fields"
         raise FormatError(path, what + _lacking(header), int(lines[LINE][0]), "header")
-    layout = Layout(header, separator, _names(path, header, separator))
+    layout = Layout(header, separator, _names(path, header, separator, declared))
     pairs = [name for name in layout.names if name.strip().lower() in _PAIRS]
     if len(pairs) != 1:
         return layout
@@ -292,12 +300,20 @@ def _require_line_ends(path: Path, lines: pl.DataFrame, text: pl.Expr) -> None:
         raise FormatError(path, "lines end in CR alone (\\r); write LF (\\n) or CR LF at their ends", int(joined[LINE][0]))
 
 
-def _names(path: Path, header: str, separator: str) -> list[str]:
+def _names(path: Path, header: str, separator: str, declared: Iterable[str]) -> list[str]:
     names = [n.strip().strip('"') for n in header.split(separator)]
     require_few(path, len(names))
     repeated = [name for name, n in Counter(names).items() if n > 1 and name]
-    if repeated:
-        raise FormatError(path, f"the column “{repeated[0]}” is named twice; give one of the two another name", 1)
+    # Which of them counts is a person's choice; without one nothing is guessed.
+    selected = {value.rpartition("#")[0] for value in declared if re.search(r"#\d+(:\w+)?$", value)}
+    if refused := [name for name in repeated if name not in selected]:
+        n, name = names.count(refused[0]), refused[0]
+        often = "twice" if n == 2 else f"{n} times"
+        how = f"give one of them another name, or choose by place (#1 is the first); {declare(f'QUANTITY={name}#1')}"
+        raise FormatError(path, f"the column “{name}” is named {often}; {how}", 1)
+    for name in repeated:
+        for place, at in enumerate([k for k, each in enumerate(names) if each == name], 1):
+            names[at] = f"{name}#{place}"
     # Columns without a name (a data frame's index, what a person wrote beside, the separator at the end of a line) are seen by their place.
     return [name or ("" if f"column {k}" in names else f"column {k}") for k, name in enumerate(names, 1)]
 
