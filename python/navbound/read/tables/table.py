@@ -258,15 +258,18 @@ def rows_of(path: Path, layout: Layout, lines: pl.DataFrame) -> Rows:
     _require_line_ends(path, lines, bare)
     counted = lines.with_columns(n=bare.str.count_matches(layout.separator, literal=True) + 1, open=bare.str.contains('"', literal=True))
     n_fields = len(layout.names)
-    # Of a field in quotation marks nothing stands behind the second of them.
-    behind = pl.col("text").str.contains(f'(?:^|{re.escape(layout.separator)})"(?:[^"]|"")*"[^"{re.escape(layout.separator)}]')
-    counted = counted.with_columns(open=pl.col("open") | behind)
+    # Of a field in quotation marks nothing stands behind the last of them. Fields are taken from the begin of the line on: a separator
+    # and a doubled mark within a field begin no other one.
+    sep = re.escape(layout.separator)
+    behind = pl.col("text").str.contains(rf'^(?:(?:"(?:[^"]|"")*"|[^"{sep}][^{sep}]*)?{sep})*"(?:[^"]|"")*"[^"{sep}]')
+    counted = counted.with_columns(unended="open", open=pl.col("open") | behind)
     good = counted.filter(pl.col("n") == n_fields, ~pl.col("open"))
     bad = counted.filter((pl.col("n") != n_fields) | pl.col("open"))
     refused = None
     if not bad.is_empty():
-        text, line, n, _ = bad.row(0)
-        what = f"first: {n}" if n != n_fields else "first: a quotation mark that does not enclose a field"
+        text, line, n, unended = bad.select("text", LINE, "n", "unended").row(0)
+        fields = f"first: {n}" if n != n_fields else "first: a quotation mark that does not enclose a field"
+        what = "first: a quotation mark that opens a field and ends none; a field with a line break is not read" if unended else fields
         refused = (f"a row with another number of fields than the header's {n_fields} ({what})", bad.height, line, text)
     body = "\n".join([layout.header, *good["text"].to_list()]).encode()
     schema = dict.fromkeys(map(str, range(n_fields)), pl.String)
@@ -300,8 +303,19 @@ def _require_line_ends(path: Path, lines: pl.DataFrame, text: pl.Expr) -> None:
         raise FormatError(path, "lines end in CR alone (\\r); write LF (\\n) or CR LF at their ends", int(joined[LINE][0]))
 
 
+def _cells(line: str, separator: str) -> list[str]:
+    """The fields of a line as they are written; a separator between quotation marks ends none."""
+    fields = [""]
+    for part in re.findall(rf'"[^"]*"|[^"{re.escape(separator)}]+|"|{re.escape(separator)}', line):
+        if part == separator:
+            fields.append("")
+        else:
+            fields[-1] += part
+    return fields
+
+
 def _names(path: Path, header: str, separator: str, declared: Iterable[str]) -> list[str]:
-    names = [n.strip().strip('"') for n in header.split(separator)]
+    names = [n.strip().removeprefix('"').removesuffix('"').replace('""', '"') for n in _cells(header, separator)]
     require_few(path, len(names))
     repeated = [name for name, n in Counter(names).items() if n > 1 and name]
     # Which of them counts is a person's choice; without one nothing is guessed.
