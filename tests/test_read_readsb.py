@@ -182,3 +182,21 @@ def test_how_far_an_aircraft_without_a_speed_moved_is_not_known(tmp_path: Path) 
         del each["gs"]
     words = " ".join(navbound.analyze(lines(tmp_path, states)).summary.assumptions)
     assert "up to 0.25 s old, in which nobody knows how far the aircraft moved" in words
+
+
+def test_when_an_aircraft_was_heard_is_an_age_and_no_word_of_quality(tmp_path: Path) -> None:
+    """No position is newer than the last message; of two ages the larger counts."""
+    taken = [snapshot(k, [state(k, seen=0.1 if k < 6 else 30.0)]) for k in range(12)]
+    reading = read(write(tmp_path, "\n".join(map(json.dumps, taken))))
+    assert not any("seen" in each for each in reading.unread)
+    assert reading.epochs["status"].to_list() == ["ok"] * 6 + ["not_available"] * 6
+    ages_ns = reading.epochs["time_ns"] - reading.epochs["position_time_ns"]
+    assert ages_ns.to_list() == [250_000_000] * 6 + [30_000_000_000] * 6
+
+
+def test_what_is_seen_elsewhere_is_no_age(tmp_path: Path) -> None:
+    path = tmp_path / "table.csv"
+    path.write_text("time,lat,lon,seen\n" + "".join(f"{NOW_S + k},48.{k:03d},2.0,12\n" for k in range(12)))
+    reading = read(path)
+    assert reading.unread == ["seen"]
+    assert "position_time_ns" not in reading.epochs.columns

@@ -74,6 +74,10 @@ Provenance: standard, from knowledge of the interface."""
 READSB = _words("hex seen_pos")
 """A table with both is one of readsb's aircraft: its `type` is how the position came, and a row without one claims nothing."""
 
+HEARD = _words("hex seen")
+"""A table with both is one of dump1090's or readsb's aircraft: `seen` is how long ago the aircraft was heard last, and no position of it is
+newer. [s]"""
+
 _OF_PLACE = ("lat", "lon")
 
 

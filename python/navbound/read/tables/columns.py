@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from navbound.errors import FormatError, InputError
 from navbound.read.beside.places import Place, find
 from navbound.read.checks.statements import (
+    AGE,
     NUC,
     READSB_TYPE,
     kind_of,
@@ -19,7 +20,7 @@ from navbound.read.checks.statements import (
     speaks_of_integrity,
     speaks_of_level,
 )
-from navbound.read.own_positions import READSB
+from navbound.read.own_positions import HEARD, READSB
 from navbound.read.quantities import (
     DUMP1090,
     DUMP1090_SPEED,
@@ -216,11 +217,7 @@ def assign(
     _require(columns, times, names, path, needs)
     _refuse_twins(columns, set(declared or {}), names, path)
     free = [n for n in names if n not in taken]
-    kinds = {name: kind_of(_plain(name)[0]) for name in free}
-    if {_plain(name)[0] for name in names} & TRANSPONDER:
-        kinds.pop("alert", None)
-    if {_plain(name)[0] for name in names} >= READSB:
-        kinds |= {name: READSB_TYPE for name in free if _plain(name)[0] == "type"}
+    kinds = _kinds(free, {_plain(name)[0] for name in names})
     if tuple(needs) != POSITION:
         # A level counts with any dilution: an error above it is misleading all the same.
         kinds = {name: kind for name, kind in kinds.items() if kind is None or not math.isfinite(kind.above)}
@@ -234,6 +231,18 @@ def assign(
     places = find([n for n in unused if n not in compared], {*(declared or {}), *beside}) if tuple(needs) == POSITION else []
     speed = "" if tuple(needs) != POSITION or "ground_speed_mps" in columns.keys() | absent else _speed_without_unit(unused)
     return Assignment(columns, times, unused, statements, again, places, absent, speed)
+
+
+def _kinds(free: list[str], plain: set[str]) -> dict[str, Kind | None]:
+    """What columns that nobody reads state of the validity or the integrity of positions, beside the plain names of all columns."""
+    kinds = {name: kind_of(_plain(name)[0]) for name in free}
+    if plain & TRANSPONDER:
+        kinds.pop("alert", None)
+    if plain >= READSB:
+        kinds |= {name: READSB_TYPE for name in free if _plain(name)[0] == "type"}
+    if plain >= HEARD:
+        kinds |= {name: AGE for name in free if _plain(name)[0] == "seen"}
+    return kinds
 
 
 def _speed_without_unit(free: list[str]) -> str:
