@@ -14,6 +14,7 @@ from navbound.errors import FormatError
 from navbound.read.beside.places import OtherPlaces
 from navbound.read.checks.plausible import Limits
 from navbound.read.checks.statements import STALE_AFTER_S
+from navbound.read.quantities import UNITS
 from navbound.read.tables.cells import largest, no_field, numbers
 from navbound.read.tables.columns import NO_COLUMN, POSITION, declare
 from navbound.read.tables.table import LINE
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Container, Mapping
     from pathlib import Path
 
+    from navbound.read.beside.no_speed import NoSpeeds
+    from navbound.read.checks.rejections import Tally
     from navbound.read.tables.columns import Assignment, Column
 
 APART_M = 100.0
@@ -47,7 +50,8 @@ class Further:
     The largest speed and the smallest indicator count; positions and times must agree, and most of the speeds.
     """
 
-    def __init__(self, path: Path, mapping: Assignment) -> None:
+    def __init__(self, path: Path, mapping: Assignment, no_speeds: NoSpeeds) -> None:
+        self._no_speeds = no_speeds
         self._path, self._mapping = path, mapping
         self._time = next((column for column in mapping.again if column.quantity == "time"), None)
         self._facts, self._unit = list[TimeFacts](), ""
@@ -56,8 +60,8 @@ class Further:
         self._speeds: dict[str, tuple[int, int, float]] = {}
         self._apart_s = 0.0
 
-    def see(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
-        """The next rows: those that are read, with the largest speed, and the file's."""
+    def see(self, part: pl.DataFrame, frame: pl.DataFrame, tally: tuple[Tally, int]) -> pl.DataFrame:
+        """The next rows: those that are read, with the largest speed, and the file's; `tally` takes numbers that are no speeds."""
         self._places.see(part, frame)
         for column in self._mapping.again:
             if column.quantity not in part.columns or no_field(frame.schema[column.name]):
@@ -68,6 +72,7 @@ class Further:
             elif column.quantity in _INDICATORS:
                 part = part.with_columns(pl.min_horizontal(column.quantity, other).alias(column.quantity))
             else:
+                other = self._no_speeds.without(column.name, frame, other, UNITS["mps"][column.unit], tally)
                 self._see_speeds(column.name, part[column.quantity], other)
                 part = part.with_columns(pl.max_horizontal(column.quantity, other).alias(column.quantity))
         if {"ground_speed_mps", *_VELOCITY} <= set(part.columns):

@@ -11,6 +11,7 @@ from navbound import status
 from navbound.errors import UNSEEN, FormatError
 from navbound.read import own_positions
 from navbound.read.beside.further import Further, Speeds
+from navbound.read.beside.no_speed import NoSpeeds
 from navbound.read.beside.speed_unit import SpeedUnit
 from navbound.read.checks import levels, stated, statements
 from navbound.read.checks.places import NO_PLACE, Nowhere
@@ -39,7 +40,7 @@ _AGE, _OLDEST_S = "__age_s", 1e6
 _AHEAD_NS = 1_000_000_000
 """How much later than its row a position may be said to be: both may be rounded."""
 
-FIELDS, OPTIONAL, DATED, REQUIRED, REPEATED, LEVELS, COMPARED = range(0, 700_000, 100_000)
+FIELDS, OPTIONAL, DATED, REQUIRED, REPEATED, LEVELS, COMPARED, SPEEDS = range(0, 800_000, 100_000)
 """Where a reason stands among the others of its file; the number of the column is added to that of an optional one."""
 
 
@@ -87,7 +88,8 @@ class Values:
         self.tally, self.notes, self.position_doubts = Tally(), list[str](), list[str]()
         self._path, self._stem, self._mapping, self._required = path, stem, mapping, required
         self._dated = position_time(mapping.unused)
-        self._further, self._speeds = Further(path, mapping), Speeds(mapping.absent)
+        self._no_speeds = NoSpeeds()
+        self._further, self._speeds = Further(path, mapping, self._no_speeds), Speeds(mapping.absent)
         self._nowhere, self.whole_seconds = Nowhere(), True
         self._callsigns = Callsigns()
         self._speed = SpeedUnit(mapping.speed) if mapping.speed else None
@@ -122,7 +124,7 @@ class Values:
             if QUANTITY[name].si == "text":
                 out[name] = one_writing(name, raw.cast(pl.String).str.replace_all(UNSEEN, "").str.strip_chars())
                 continue
-            out[name], reason = numbers(raw, column)
+            out[name], reason = self._numbers(frame, column)
             self._n_ground[column.name] = self._n_ground.get(column.name, 0) + int(on_ground(raw, column).sum())
             reasons[name] = reason
             if name in self._required:
@@ -142,7 +144,9 @@ class Values:
             # `lastPosition` of readsb is an object and no time.
             self._dated = None
         part = self._with_age(self._with_unread(self._callsigns.as_tracks(part), frame), frame)
-        part = self._with_speed(self._further.see(part, frame).with_columns(*_reasons(frame, against), *self._raw(frame)), frame)
+        part = self._with_speed(
+            self._further.see(part, frame, (self.tally, SPEEDS)).with_columns(*_reasons(frame, against), *self._raw(frame)), frame
+        )
         for name in POSITION:
             if name in part.columns:
                 self._largest[name] = max(self._largest[name], largest(part[name]))
@@ -156,6 +160,13 @@ class Values:
         else:
             rows = stated.of_satellites(self._listed_statuses(stated.with_faulty_cells(stated.worse_than_level(part), reasons, without)))
         return stated.with_statements(rows, self._statements(frame))
+
+    def _numbers(self, frame: pl.DataFrame, column: Column) -> tuple[pl.Series, pl.Series]:
+        """A column in SI, and why its values are none; a speed that is none is not stated, which is no fault of the row."""
+        values, reason = numbers(frame[column.name], column)
+        if column.quantity == "ground_speed_mps":
+            values = self._no_speeds.without(column.name, frame, values, UNITS["mps"][column.unit], (self.tally, SPEEDS))
+        return values, reason
 
     def _with_speed(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
         """The numbers of a speed whose unit nobody states."""
@@ -397,6 +408,10 @@ class Values:
             out = out.with_columns(valid_ns.alias(POSITION_TIME)).drop(_AGE)
         if self._speed is not None:
             out = self._speed.made(out)
+            if self._speed.unit:
+                factor = UNITS["mps"][self._speed.unit]
+                speed = self._no_speeds.without(self._speed.name, out, out["ground_speed_mps"], factor, (self.tally, SPEEDS))
+                out = out.with_columns(speed.alias("ground_speed_mps"))
         out = self._speeds.whole(out.with_columns(self._track(out)), left_out=pl.col(_BAD).is_not_null())
         self.whole_seconds &= bool((out["time_ns"].drop_nulls() % 1_000_000_000 == 0).all())
         without = out.filter(pl.col(_BAD).is_not_null())
@@ -448,6 +463,7 @@ class Values:
 
     def doubts(self) -> list[str]:
         """Why nothing can be shown of the positions, after the last rows."""
+        self.position_doubts += [each for each in self._no_speeds.doubts(self._path) if each not in self.position_doubts]
         if self._dated is None or self._n_undated <= self._n_dated:
             return self.position_doubts
         unread = f"{self._n_undated} of its {self._n_undated + self._n_dated} fields cannot be read as a time"
