@@ -19,7 +19,8 @@ import pytest
 
 from live_fixture import FLEET, Sent
 from navbound import _core, live
-from navbound.live.fleet import Feeder, Worker, connect, create, nats
+from navbound.live.fleet import Feeder, Worker, connect, create
+from navbound.live.fleet.brokers import shared
 from navbound.live.fleet.reading import records
 from navbound.live.fleet.transport import Transport
 
@@ -72,13 +73,13 @@ class Server:
 def serving(folder: Path) -> Iterator[Server]:
     """A server for a while."""
     folder.mkdir(parents=True, exist_ok=True)
-    server, before = Server(folder), nats.MOST_BYTES
+    server, before = Server(folder), shared.MOST_BYTES
     # A server sets aside what a log may take, and a test has many fleets.
-    nats.MOST_BYTES = 16 << 20
+    shared.MOST_BYTES = 16 << 20
     try:
         yield server
     finally:
-        nats.MOST_BYTES = before
+        shared.MOST_BYTES = before
         server.process.kill()
         server.process.wait()
 

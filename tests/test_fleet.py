@@ -104,7 +104,7 @@ def test_a_worker_that_is_gone_at_any_point_is_followed_by_another_without_loss_
     with made(name) as transport, create(str(tmp_path / "spool"), RECORD, 3) as spool:
         fed(transport, fleet(n, seconds, 2), None if "://" not in name else spool)
     monkeypatch.setattr("navbound.live.fleet.files.READ_BYTES", 20_000)
-    monkeypatch.setattr("navbound.live.fleet.stream_log.MOST_READ", 20_000)
+    monkeypatch.setattr("navbound.live.fleet.brokers.numbered.MOST_READ", 20_000)
     for passes in (1, 2, 1):
         with connect(name) as transport:
             killed_at(transport, at, passes, monkeypatch)
@@ -176,7 +176,7 @@ def stepped(run: lane_run.LaneRun, seconds: float) -> None:
 
 
 def test_a_frozen_worker_writes_nothing_behind_its_back(server: Server, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("navbound.live.fleet.nats.LEASE_S", 0.3)
+    monkeypatch.setattr("navbound.live.fleet.brokers.shared.LEASE_S", 0.3)
     name = server.name("frozen")
     with made(name, 1) as frozen, create(str(tmp_path / "spool"), RECORD, 1) as spool:
         fed(frozen, fleet(60, 40, 2), spool)

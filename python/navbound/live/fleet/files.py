@@ -55,11 +55,12 @@ class FileLog:
     def append(self, frames: bytes, at: int) -> None:
         """Write frames: as :class:`navbound.live.fleet.transport.Log` says."""
         written = self._writer()
-        if at == written.length:
-            written.append(frames)
-            return
-        if at > written.length or written.content(at)[: len(frames)] != frames:
+        # A writer that repeats itself may have more to write by now.
+        stands = written.content(at)[: len(frames)] if at < written.length else b""
+        if at > written.length or stands != frames[: len(stands)]:
             raise FencedError(f"{self._path} holds other frames at byte {at}: another process writes there")
+        if len(stands) < len(frames):
+            written.append(frames[len(stands) :])
 
     def read(self, begin: int) -> bytes:
         """Frames from a position on: as :class:`navbound.live.fleet.transport.Log` says."""

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from types import TracebackType
 
 MOST_LANES = 64
-TRANSPORTS = "a folder, or nats://host:port/NAME"
+TRANSPORTS = "a folder, nats://host:port/NAME or kafka://host:port/NAME"
 WAIT_S = 0.05
 """Longest time that a reader waits for something new. [s]"""
 
@@ -155,7 +155,7 @@ def connect(name: str, *, patience_s: float = 0.0) -> Opened:
     Parameters
     ----------
     name : str
-        A folder, or ``nats://host:port/NAME``.
+        A folder, ``nats://host:port/NAME`` or ``kafka://host:port/NAME``.
     patience_s : float
         How long it may take to appear. [s]
 
@@ -174,9 +174,13 @@ def _kind(name: str) -> Any:
 
         return Files
     if scheme in {"nats", "tls"}:
-        from navbound.live.fleet.nats import Nats  # noqa: PLC0415 - its library is optional
+        from navbound.live.fleet.brokers.nats import Nats  # noqa: PLC0415 - its library is optional
 
         return Nats
+    if scheme == "kafka":
+        from navbound.live.fleet.brokers.kafka import Kafka  # noqa: PLC0415 - its library is optional
+
+        return Kafka
     raise InputError("to", name, domain=TRANSPORTS)
 
 
