@@ -2,6 +2,7 @@
 
     .venv/bin/python bench/live_fleet.py files --aircraft 5000 --seconds 60
     .venv/bin/python bench/live_fleet.py nats --kill worker        # or: --kill broker; both 30 s after the begin
+    .venv/bin/python bench/live_fleet.py kafka                     # needs what ./dev test kafka brings
 
 Acceptance lines A17 to A20 of the live specification. The fleet and its truth are shared data, beside the repository.
 """
@@ -28,10 +29,12 @@ SHARED = ROOT.parent / "shared" / "live"
 sys.path[:0] = [str(ROOT / "tests"), str(SHARED)]
 
 from fleet_fixture import Server  # noqa: E402
+from kafka_fixture import KafkaServer  # noqa: E402
 from navbound.live.session import now_ns  # noqa: E402
 
 COMMAND = [sys.executable, "-c", "from navbound.cli.start import process; process()", "live"]
 TICK_S = 0.01
+BROKERS: dict[str, type[Server]] = {"nats": Server, "kafka": KafkaServer}
 
 
 def produce(n: int, seconds: int, seed: int, to: Any) -> int:
@@ -80,14 +83,7 @@ class Process:
 
     def look(self) -> None:
         """Keep processor time [s] and largest memory [MB] of now."""
-        try:
-            fields = Path(f"/proc/{self.process.pid}/stat").read_text().rpartition(")")[2].split()
-            status = Path(f"/proc/{self.process.pid}/status").read_text()
-        except OSError:
-            return
-        self.cpu_s = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-        peak = [line for line in status.splitlines() if line.startswith("VmHWM")]
-        self.memory_mb = int(peak[0].split()[1]) / 1024 if peak else self.memory_mb
+        self.cpu_s, self.memory_mb = use_of(self.process.pid) or (self.cpu_s, self.memory_mb)
 
     def end(self, number: int = signal.SIGTERM) -> None:
         self.look()
@@ -108,7 +104,7 @@ def require_begun(place: str) -> None:
 
 def main() -> None:
     ask = argparse.ArgumentParser(description=__doc__)
-    ask.add_argument("transport", choices=["files", "nats"])
+    ask.add_argument("transport", choices=["files", *BROKERS])
     ask.add_argument("--aircraft", type=int, default=5000)
     ask.add_argument("--seconds", type=int, default=60)
     ask.add_argument("--seed", type=int, default=1)
@@ -121,7 +117,7 @@ def main() -> None:
 
 def run(how: argparse.Namespace, folder: Path) -> None:
     """One run, printed."""
-    server = Server(folder) if how.transport == "nats" else None
+    server = BROKERS[how.transport](folder) if how.transport in BROKERS else None
     place = str(folder / "fleet") if server is None else server.name("bench")
     feeder = Process("feed", "-", "--to", place, "--spool", str(folder / "spool"), stdin=subprocess.PIPE)
     require_begun(place)
@@ -142,6 +138,7 @@ def run(how: argparse.Namespace, folder: Path) -> None:
             time.sleep(3.0)
             again_ns = now_ns()
             server.begin()
+            print(f"broker: answers {(now_ns() - again_ns) / 1e9:.1f} s after it was started again", flush=True)
 
     killer = threading.Thread(target=kill, daemon=True)
     if how.kill:
@@ -150,6 +147,7 @@ def run(how: argparse.Namespace, folder: Path) -> None:
     for worker in workers:
         worker.look()
     before = [worker.cpu_s for worker in workers]
+    broker_before_s = broker_use(server)[0]
     shift_ns = produce(how.aircraft, how.seconds, how.seed, feeder.process.stdin)
     assert feeder.process.stdin is not None
     feeder.process.stdin.close()
@@ -157,7 +155,9 @@ def run(how: argparse.Namespace, folder: Path) -> None:
     feeder.end()
     time.sleep(6.0)
     passed_s = time.monotonic() - begun
-    broker_s = 0.0 if server is None else cpu_of(server.process.pid)
+    broker_s, broker_mb = broker_use(server)
+    # One that was started again begins anew: its start is in the figure then.
+    broker_s -= 0.0 if how.kill == "broker" else broker_before_s
     for worker in workers:
         worker.end()
     read = subprocess.run([*COMMAND, "alerts", place], stdout=subprocess.PIPE, check=True).stdout
@@ -165,15 +165,27 @@ def run(how: argparse.Namespace, folder: Path) -> None:
     timed([json.loads(line) for worker in workers for line in worker.lines], killed_ns, again_ns)
     for worker, since_s in zip(workers, [*before, 0.0], strict=False):
         print(f"worker: {worker.cpu_s - since_s:.1f} s CPU in {passed_s:.0f} s, {worker.memory_mb:.0f} MB;", " ".join(worker.report)[-400:])
-    print(f"broker: {broker_s:.1f} s CPU; load {load_before:.0f} to {os.getloadavg()[0]:.0f} on {os.cpu_count()} processors")
+    print(f"broker: {broker_s:.1f} s CPU in {passed_s:.0f} s, {broker_mb:.0f} MB")
+    print(f"load {load_before:.1f} to {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors")
     print("feeder:", " ".join(feeder.report)[-400:])
     if server is not None:
         server.kill()
 
 
-def cpu_of(pid: int) -> float:
-    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+def broker_use(server: Any) -> tuple[float, float]:
+    """Of a broker's process: processor time [s] and largest memory [MB]; none where there is no broker."""
+    return (server is not None and use_of(server.process.pid)) or (0.0, 0.0)
+
+
+def use_of(pid: int) -> tuple[float, float] | None:
+    """Processor time [s] and largest memory [MB] of a process until now."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+        status = Path(f"/proc/{pid}/status").read_text()
+    except OSError:
+        return None
+    peak = [int(line.split()[1]) / 1024 for line in status.splitlines() if line.startswith("VmHWM")]
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK"), peak[0] if peak else 0.0
 
 
 def judge(how: argparse.Namespace, entry: list[dict[str, Any]], shift_ns: int) -> None:
@@ -193,9 +205,13 @@ def judge(how: argparse.Namespace, entry: list[dict[str, Any]], shift_ns: int) -
 def timed(declared: list[dict[str, Any]], killed_ns: int, again_ns: int) -> None:
     """Latency from arrival to writing of what a record decided, as the workers report it."""
     known = [t for t in declared if t["arrival_ns"] is not None and t["track"]]
-    ms = np.array([(t["emitted_ns"] - t["arrival_ns"]) / 1e6 for t in known])
-    if len(ms):
-        print(f"latency arrival to written: p50 {np.quantile(ms, 0.5):.0f}, p99 {np.quantile(ms, 0.99):.0f}, largest {ms.max():.0f} ms")
+    # A record that waits for its order, or a silence, is decided a lateness (1 s) after it arrived.
+    waited = {"all": known, "of no silence": [t for t in known if t["kind"] != "unavailable"]}
+    for which, entry in waited.items():
+        if entry:
+            ms = np.array([(t["emitted_ns"] - t["arrival_ns"]) / 1e6 for t in entry])
+            parts = ", ".join(f"p{100 * q:.0f} {np.quantile(ms, q):.0f}" for q in (0.5, 0.9, 0.99))
+            print(f"latency arrival to written, {which} {len(ms)}: {parts}, largest {ms.max():.0f} ms")
     later = [t["emitted_ns"] for t in known if t["emitted_ns"] > again_ns > 0]
     if later:
         since_again_s, since_kill_s = ((min(later) - since_ns) / 1e9 for since_ns in (again_ns, killed_ns))

@@ -166,6 +166,8 @@ def page(packages: list[Package], notices: str) -> str:
         "",
         "Python's lock file states no licence; what is installed beside navbound is not given on with it.",
         "",
+        "`tests/kafka/pom.xml` names the broker of `./dev test kafka` (Apache-2.0), which nothing else needs and no package holds.",
+        "",
         "## Pins and updates",
         "",
         "- `Cargo.lock`, `web/package-lock.json` and `uv.lock` are committed; `./dev` builds with `--locked` and `npm ci`.",

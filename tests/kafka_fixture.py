@@ -1,10 +1,9 @@
-"""A broker of Kafka on this host, for tests: Java and the jars that `./dev kafka` brings; and the one that its client pretends."""
+"""A broker of Kafka on this host, for tests: Java and the jars that `./dev test kafka` brings; and the one that its client pretends."""
 
 from __future__ import annotations
 
 import os
 import shutil
-import signal
 import socket
 import subprocess
 import time
@@ -15,6 +14,8 @@ from typing import Any
 
 import pytest
 
+from fleet_fixture import Server
+
 JARS = Path(__file__).parents[1] / ".dev" / "kafka" / "jars"
 START_S = 120.0
 JAVA = ["-Xms128m", "-Xmx384m", "-XX:+UseSerialGC", "-Dorg.slf4j.simpleLogger.defaultLogLevel=warn"]
@@ -22,7 +23,7 @@ JAVA = ["-Xms128m", "-Xmx384m", "-XX:+UseSerialGC", "-Dorg.slf4j.simpleLogger.de
 
 def need(what: str) -> None:
     """Skip aloud, or fail where the tests were asked for."""
-    text = f"{what}; ./dev kafka brings a broker (Java 17 and mvn are needed)"
+    text = f"{what}; ./dev test kafka brings a broker (Java 17 and mvn are needed)"
     if os.environ.get("NAVBOUND_NEED_KAFKA") == "1":
         pytest.fail(text)
     pytest.skip(f"SKIPPED ALOUD: {text}")
@@ -34,7 +35,7 @@ def _free() -> int:
         return int(free.getsockname()[1])
 
 
-class KafkaServer:
+class KafkaServer(Server):
     """One broker that is its own controller, with a private folder, on this host alone."""
 
     def __init__(self, folder: Path) -> None:
@@ -84,11 +85,6 @@ class KafkaServer:
             except KafkaException:
                 time.sleep(0.05)
         pytest.fail(f"the broker does not answer: {(self._folder / 'kafka.log').read_text()[-3000:]}")
-
-    def kill(self) -> None:
-        """End it as a power failure would."""
-        self.process.send_signal(signal.SIGKILL)
-        self.process.wait()
 
     def name(self, fleet: str) -> str:
         """Of a fleet on it."""

@@ -6,31 +6,51 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from fleet_fixture import RECORD, Server, fed, made, outputs, reported, serving, worked
-from live_fixture import FLEET, fleet, frames, recorded, truth
+from fleet_fixture import RECORD, Lines, Server, fed, made, outputs, reported, serving, worked
+from kafka_fixture import PretendedKafka, kafka_serving
+from live_fixture import FLEET, Sent, fleet, frames, recorded, truth
 from navbound import _core, live
 from navbound.live import journal
-from navbound.live.fleet import FencedError, Worker, connect, create, lane_run
+from navbound.live.fleet import Feeder, FencedError, Worker, connect, create, lane_run
+from navbound.live.fleet.brokers import shared
 from navbound.live.fleet.transport import Transport
 
 
 @pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+def nats(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     with serving(tmp_path_factory.mktemp("nats")) as server:
         yield server
 
 
-@pytest.fixture(params=["files", "nats"])
+@pytest.fixture(scope="module")
+def kafka(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    with kafka_serving(tmp_path_factory.mktemp("kafka")) as server:
+        yield server
+
+
+@pytest.fixture(scope="module")
+def pretended() -> PretendedKafka:
+    return PretendedKafka()
+
+
+@pytest.fixture(params=["nats", "kafka"])
+def server(request: pytest.FixtureRequest) -> Server:
+    server: Server = request.getfixturevalue(request.param)
+    return server
+
+
+@pytest.fixture(params=["files", "nats", "kafka"])
 def name(request: pytest.FixtureRequest, tmp_path: Path) -> str:
     if request.param == "files":
         return str(tmp_path / "fleet")
-    server: Server = request.getfixturevalue("server")
+    server: Server = request.getfixturevalue(request.param)
     return server.name(f"fleet-{abs(hash(request.node.name)) % 10**8}")
 
 
@@ -54,8 +74,9 @@ def test_a_fleet_gives_the_alerts_of_the_batch_monitor_each_once(name: str, tmp_
     require_truth(name, n, seconds, seed)
 
 
-def test_a_lane_is_a_session_and_files_and_a_broker_give_the_same_bits(server: Server, tmp_path: Path) -> None:
-    sent = fleet(60, 40, 3)
+@pytest.mark.parametrize("kind", ["nats", "pretended", "kafka"])
+def test_a_lane_is_a_session_and_files_and_a_broker_give_the_same_bits(kind: str, tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    sent, server = fleet(60, 40, 3), request.getfixturevalue(kind)
     files, broker = str(tmp_path / "fleet"), server.name("same-bits")
     with made(files) as transport:
         fed(transport, sent)
@@ -168,6 +189,45 @@ def test_workers_are_killed_and_stopped_and_lanes_move(server: Server, tmp_path:
     require_truth(name, n, seconds, seed)
 
 
+class Slowly(Lines):
+    """A recording that takes some seconds."""
+
+    def __init__(self, sent: tuple[Sent, ...], *, pace_s: float) -> None:
+        super().__init__(sent)
+        self._pace_s = pace_s
+
+    def read(self, timeout_s: float) -> bytes | None:
+        time.sleep(self._pace_s)
+        return super().read(timeout_s)
+
+
+@pytest.mark.parametrize("kind", ["nats", "kafka"])
+def test_a_broker_that_dies_under_a_fleet_loses_nothing_and_doubles_nothing(kind: str, tmp_path: Path) -> None:
+    """A20: between a feeder and a worker that are at work."""
+    n, seconds, seed = 60, 40, 2
+    with (serving if kind == "nats" else kafka_serving)(tmp_path / "server") as server:
+        name, heard = server.name("dies"), list[str]()
+        with made(name) as transport, create(str(tmp_path / "spool"), RECORD, 3) as spool, connect(name) as other:
+            feeder = Feeder(spool, live.Settings(**RECORD["settings"]), target=transport, say=heard.append)
+            worker = Worker(other, say=heard.append)
+            feeding = threading.Thread(target=lambda: feeder.run(Slowly(fleet(n, seconds, seed), pace_s=0.2)))
+            working = threading.Thread(target=lambda: worker.run(finishing=lambda: not feeding.is_alive()))
+            feeding.start()
+            working.start()
+            while worker.n_transitions < 3:
+                time.sleep(0.05)
+            server.kill()
+            time.sleep(1.0)
+            server.begin()
+            feeding.join(120.0)
+            working.join(120.0)
+            assert not feeding.is_alive()
+            assert not working.is_alive()
+        assert any("stays on the disk" in sentence for sentence in heard)
+        assert not any("given back" in sentence or "recovered" in sentence for sentence in heard)
+        require_truth(name, n, seconds, seed)
+
+
 def stepped(run: lane_run.LaneRun, seconds: float) -> None:
     """Work on a lane for a while."""
     until = time.monotonic() + seconds
@@ -176,7 +236,7 @@ def stepped(run: lane_run.LaneRun, seconds: float) -> None:
 
 
 def test_a_frozen_worker_writes_nothing_behind_its_back(server: Server, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("navbound.live.fleet.brokers.shared.LEASE_S", 0.3)
+    monkeypatch.setattr(shared, "LEASE_S", 0.3)
     name = server.name("frozen")
     with made(name, 1) as frozen, create(str(tmp_path / "spool"), RECORD, 1) as spool:
         fed(frozen, fleet(60, 40, 2), spool)

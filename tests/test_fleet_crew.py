@@ -16,7 +16,7 @@ from navbound import _core
 from navbound.cli.live.fleet import alerts
 from navbound.errors import FormatError
 from navbound.live import journal
-from navbound.live.fleet import Worker, connect
+from navbound.live.fleet import UnreachableError, Worker, connect
 from navbound.live.fleet.crew import Crew
 from navbound.live.fleet.files import STATUS
 
@@ -117,3 +117,29 @@ def test_what_cannot_be_judged_is_an_error_and_not_an_end(tmp_path: Path, monkey
         pytest.raises(FormatError, match=r"not judged to its end: worker 1 ended 6 times \(.*a frame is damaged at byte \d+\);"),
     ):
         crew.finish(lambda: False)
+
+
+def test_a_worker_keeps_its_lanes_while_nobody_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It gave them back one by one, and judged them again from their snapshots afterwards."""
+    monkeypatch.setattr("navbound.live.fleet.worker.RENEW_S", 0.0)
+    said, rounds, silent = list[str](), [0], [False]
+    with made(str(tmp_path / "fleet")) as transport:
+        counted = transport.n_workers
+
+        def n_workers() -> int:
+            if silent[0]:
+                raise UnreachableError("nobody answers")
+            return counted()
+
+        def stop() -> bool:
+            rounds[0] += 1
+            silent[0] = rounds[0] > 5
+            if rounds[0] == 15:
+                assert sorted(worker.lanes) == [0, 1, 2]
+            return rounds[0] == 15
+
+        monkeypatch.setattr(transport, "n_workers", n_workers)
+        worker = Worker(transport, say=said.append)
+        worker.run(stop=stop)
+    assert rounds[0] == 15
+    assert said == []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -31,8 +32,12 @@ def kafka(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
 
 
 @pytest.fixture(scope="module")
-def pretended() -> PretendedKafka:
-    return PretendedKafka()
+def pretended() -> Iterator[PretendedKafka]:
+    with pytest.MonkeyPatch.context() as patched:
+        server = PretendedKafka()
+        # It holds an empty answer back for all of that time, whatever is written meanwhile.
+        patched.setattr("navbound.live.fleet.brokers.kafka_client.FETCH_WAIT_MS", 5)
+        yield server
 
 
 BROKERS = ["nats", "pretended", "kafka"]
@@ -262,6 +267,8 @@ def test_who_claimed_a_lane_and_slept_before_it_wrote_is_shut_out(broker: str, m
 
 
 def test_of_workers_that_claim_at_once_one_has_the_lane(broker: str) -> None:
+    first: Any
+    second: Any
     with made(broker) as first, connect(broker) as second:
         for lane in range(3):
             # Both have seen that nobody has it.

@@ -35,8 +35,8 @@ if TYPE_CHECKING:
 FleetSource = Annotated[
     str, typer.Argument(help="What many aircraft send: a file, - (standard input), tcp://host:port, udp://host:port, or simulated:N.")
 ]
-To = Annotated[str, typer.Option("--to", help="What carries the fleet: a folder, or nats://host:port/NAME.")]
-Fleet = Annotated[str, typer.Argument(help="What carries the fleet: a folder, or nats://host:port/NAME.")]
+To = Annotated[str, typer.Option("--to", help="What carries the fleet: a folder, nats://host:port/NAME or kafka://host:port/NAME.")]
+Fleet = Annotated[str, typer.Argument(help="What carries the fleet: a folder, nats://host:port/NAME or kafka://host:port/NAME.")]
 Lanes = Annotated[int, typer.Option(help="Lanes that the aircraft are shared out to; fixed for the life of a fleet.")]
 LineForm = Annotated[
     str | None,

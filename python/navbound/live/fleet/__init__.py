@@ -1,6 +1,6 @@
 """Many aircraft: a feeder that writes their lines down by lane, workers that judge lanes, and what carries both.
 
-`transport` is the contract, `files` and `nats` hold it; `feeder` reads a source; `lane_run` judges one lane and survives being killed;
+`transport` is the contract, `files` and `brokers` hold it; `feeder` reads a source; `lane_run` judges one lane and survives being killed;
 `worker` shares lanes with other workers; `crew` keeps workers alive on one host; `pretend` is a fleet for a first look.
 """
 

@@ -107,7 +107,13 @@ class Transport(Protocol):
         ...
 
     def n_workers(self) -> int:
-        """Workers that are alive, this one among them."""
+        """Workers that are alive, this one among them.
+
+        Raises
+        ------
+        UnreachableError
+            Nobody answers, so nobody knows.
+        """
         ...
 
     def wait(self) -> None:

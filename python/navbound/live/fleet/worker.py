@@ -122,7 +122,11 @@ class Worker:
         self._renewed_s = time.monotonic()
         if taken := self._transport.renew():
             raise FencedError(f"lane {taken[0]} was taken over by another worker while this one did not answer")
-        share = self._transport.n_lanes if everything else -(-self._transport.n_lanes // max(1, self._transport.n_workers()))
+        try:
+            share = self._transport.n_lanes if everything else -(-self._transport.n_lanes // max(1, self._transport.n_workers()))
+        except UnreachableError:
+            # What it has it keeps: lanes given back now would be restored and judged again once somebody answers.
+            return
         for lane in range(self._transport.n_lanes):
             if len(self.lanes) >= share:
                 break

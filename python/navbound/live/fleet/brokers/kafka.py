@@ -21,7 +21,7 @@ from urllib.parse import urlsplit
 
 from navbound.errors import FormatError, InputError
 from navbound.live.fleet.brokers import shared
-from navbound.live.fleet.brokers.kafka_client import MOST_RECORD, Client, Following, TopicPartition, header
+from navbound.live.fleet.brokers.kafka_client import MOST_RECORD, Client, Following, header, partitions
 from navbound.live.fleet.brokers.kafka_log import KafkaLog, Kept
 from navbound.live.fleet.brokers.shared import CONNECT_S, Broker
 from navbound.live.fleet.transport import WAIT_S, UnreachableError
@@ -67,7 +67,8 @@ class Kafka(Broker):
         return f"{self._fleet}-{kind}"
 
     def _make(self, n_lanes: int) -> None:
-        there, size = self.client.topics(), {"max.message.bytes": MOST_RECORD}
+        there = self.client.topics()
+        size: dict[str, object] = {"max.message.bytes": MOST_RECORD}
         wanted: dict[str, tuple[int, dict[str, object]]] = {
             self._topic("in"): (n_lanes, size | _newest_bytes(shared.MOST_BYTES)),
             self._topic("out"): (n_lanes, size | _newest_bytes(shared.MOST_BYTES)),
@@ -98,7 +99,7 @@ class Kafka(Broker):
 
     def _members(self) -> list[str]:
         kept, prefix = self._keeps(), "worker."
-        return [] if kept is None else [key.removeprefix(prefix) for key in kept.keys() if key.startswith(prefix)]
+        return [] if kept is None else [key.removeprefix(prefix) for key in kept.names() if key.startswith(prefix)]
 
     def _remove(self, *key: object) -> None:
         if (kept := self._keeps()) is not None:
@@ -139,9 +140,9 @@ class Kafka(Broker):
         whole = list[bytes]()
         for record in self.client.records(topic, lane, begin, behind):
             content = bytes(record.value() or b"")
-            head, k = shared.head(content), int(header(record, PART) or 0)
-            parts[head] = [*(parts.get(head, []) if k else []), content]
-            if len(parts[head]) == shared.n_parts(content) and (snapshot := shared.joined(parts[head])) is not None:
+            whole_of, k = shared.digest(content), int(header(record, PART) or 0)
+            parts[whole_of] = [*(parts.get(whole_of, []) if k else []), content]
+            if len(parts[whole_of]) == shared.n_parts(content) and (snapshot := shared.joined(parts[whole_of])) is not None:
                 whole.append(snapshot)
         return whole[: -_SNAPSHOTS - 1 : -1]
 
@@ -158,7 +159,7 @@ class Kafka(Broker):
             ends = [self.client.bounds(self._topic("shown"), k)[1] for k in range(self.n_lanes)]
             # Who was away while they were removed goes on with the newest.
             self._shows = self.client.consumer(**{"auto.offset.reset": "latest"})
-            self._shows.assign([TopicPartition(self._topic("shown"), k, end) for k, end in enumerate(ends)])
+            self._shows.assign(partitions(self._topic("shown"), ends))
         while (record := self._shows.poll(0.0)) is not None:
             if record.error() is None and (shown := shared.shown_of(bytes(record.value() or b""))) is not None:
                 self._shown[int(record.partition() or 0)].append(shown)

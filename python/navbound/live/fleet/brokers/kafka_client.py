@@ -16,7 +16,8 @@ from navbound.live.fleet.transport import UnreachableError
 
 try:
     from confluent_kafka import Consumer, KafkaError, KafkaException, Producer, TopicPartition
-    from confluent_kafka.admin import AdminClient, NewTopic
+    from confluent_kafka.admin import AdminClient
+    from confluent_kafka.cimpl import NewTopic
 except ImportError as e:  # pragma: no cover - an environment without the extra
     raise InputError("to", "kafka://", domain="a folder, unless pip install 'navbound[kafka]' has brought the client of Kafka") from e
 
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 MOST_RECORD = 8 << 20
 """Bytes of a record; the topics that are made here take it. [B]"""
 AGAIN_S = 0.05
+FETCH_WAIT_MS = 100
+"""How long a broker may hold back an empty answer; a partition that is added to others waits as long. [ms]"""
 _POLL_S = 0.1
 _AT_ONCE = 64
 
@@ -80,8 +83,7 @@ class Client:
             "fetch.error.backoff.ms": 50,
             "fetch.queue.backoff.ms": 10,
             "queued.max.messages.kbytes": 16_384,
-            # A partition that is added to the others waits for the request that is under way.
-            "fetch.wait.max.ms": 100,
+            "fetch.wait.max.ms": FETCH_WAIT_MS,
         }
         return Consumer(self._settings | fixed | options)
 
@@ -166,7 +168,9 @@ class Client:
 
     def _refused(self, error: KafkaError, data: bytes | None) -> Exception:
         if error.code() == KafkaError.MSG_SIZE_TOO_LARGE:
-            return FormatError(self.name, f"a record of {len(data or b'')} B is too long; set max.message.bytes = {MOST_RECORD} of its topic")
+            return FormatError(
+                self.name, f"a record of {len(data or b'')} B is too long; set max.message.bytes = {MOST_RECORD} of its topic"
+            )
         if error.code() == KafkaError.TOPIC_AUTHORIZATION_FAILED:
             return FormatError(self.name, f"a record is refused: {error.str()}")
         return UnreachableError(f"{self.name} does not answer ({error.name()})")
@@ -185,7 +189,9 @@ class Client:
                             found.append(record)
                             begin = offset + 1
                     elif record is not None and _is_removed(record.error()):
-                        raise FormatError(self.name, f"{topic}/{lane} does not hold record {begin} any more: let the broker keep more bytes")
+                        raise FormatError(
+                            self.name, f"{topic}/{lane} does not hold record {begin} any more: let the broker keep more bytes"
+                        )
                     elif time.monotonic() > until:
                         raise UnreachableError(f"{self.name} does not give record {begin} of {topic}/{lane}")
             finally:
@@ -278,3 +284,8 @@ def header(record: Record, name: str) -> bytes | None:
     """A header of a record."""
     value = dict(record.headers() or ()).get(name)
     return value.encode() if isinstance(value, str) else value
+
+
+def partitions(topic: str, offsets: list[int]) -> list[TopicPartition]:
+    """All partitions of a topic, each from its offset on."""
+    return [TopicPartition(topic, lane, offset) for lane, offset in enumerate(offsets)]

@@ -6,7 +6,7 @@ import threading
 import time
 from typing import TYPE_CHECKING, NamedTuple
 
-from confluent_kafka import OFFSET_BEGINNING, KafkaError, TopicPartition
+from confluent_kafka import KafkaError, TopicPartition
 
 from navbound.live.fleet.brokers.kafka_client import Client, header
 from navbound.live.fleet.brokers.numbered import AT, Message, NumberedLog, position
@@ -77,9 +77,10 @@ class Kept:
     def __init__(self, client: Client, topic: str, anew: Callable[[], None]) -> None:
         self._client, self._topic, self._anew = client, topic, anew
         self._consumer = client.consumer(**{"enable.partition.eof": True, "auto.offset.reset": "earliest"})
-        self._consumer.assign([TopicPartition(topic, 0, OFFSET_BEGINNING)])
+        # To ask for the beginning by its own name costs half a second.
+        self._next = client.bounds(topic, 0)[0]
+        self._consumer.assign([TopicPartition(topic, 0, self._next)])
         self._entries: dict[str, _Entry] = {}
-        self._next = 0
         self._heard_s = time.monotonic()
         self._lock = threading.Lock()
 
@@ -88,7 +89,7 @@ class Kept:
         self._catch_up(self._client.bounds(self._topic, 0)[1])
         return self._entries.get(key)
 
-    def keys(self) -> list[str]:
+    def names(self) -> list[str]:
         """Those under which something is kept."""
         self._catch_up(self._client.bounds(self._topic, 0)[1])
         return list(self._entries)
@@ -99,6 +100,10 @@ class Kept:
             known = self._entries.get(key, _Entry(b"", 0)).number
             number = 1 + (known if last is None else last)
             offset = self._client.send(self._topic, 0, content, key=key, headers={NUMBER: str(number)})
+            with self._lock:
+                if offset == self._next:
+                    # Nobody wrote between: what comes back later says nothing new.
+                    self._take(key, number, content, offset)
             self._catch_up(offset + 1)
             if self._entries.get(key) == (content, number):
                 return number
@@ -119,7 +124,7 @@ class Kept:
                     if time.monotonic() > until:
                         raise UnreachableError(f"{self._client.name} does not give what is kept")
                 elif record.error() is None:
-                    self._take(record)
+                    self._hear(record)
                 elif record.error().code() == KafkaError._PARTITION_EOF:  # type: ignore[union-attr]
                     # The last records before it may have been compacted away.
                     self._next = max(self._next, int(record.offset() or 0))
@@ -128,13 +133,19 @@ class Kept:
                 self._anew()
             self._heard_s = now
 
-    def _take(self, record: Record) -> None:
-        self._next, key, content = int(record.offset() or 0) + 1, (record.key() or b""), record.value()
-        name, number = key.decode(errors="replace") if isinstance(key, bytes) else key, position(header(record, NUMBER))
+    def _hear(self, record: Record) -> None:
+        key, content = record.key() or b"", record.value()
+        name = key.decode(errors="replace") if isinstance(key, bytes) else key
+        self._take(name, position(header(record, NUMBER)), None if content is None else bytes(content), int(record.offset() or 0))
+
+    def _take(self, key: str, number: int, content: bytes | None, offset: int) -> None:
+        if offset < self._next:
+            return
+        self._next = offset + 1
         if content is None:
-            self._entries.pop(name, None)
-        elif number > (self._entries[name].number if name in self._entries else 0):
-            self._entries[name] = _Entry(bytes(content), number)
+            self._entries.pop(key, None)
+        elif number > (self._entries[key].number if key in self._entries else 0):
+            self._entries[key] = _Entry(content, number)
 
     def close(self) -> None:
         """End it."""

@@ -67,6 +67,9 @@ class NatsLog(NumberedLog):
 
         self._reader = self._server.call(start())
 
+    def _refill(self) -> None:
+        """The thread that speaks with the server takes what comes."""
+
     async def _fetch(self, number: int, waiting: deque[Message]) -> None:
         """Fetch messages from a number on, as long as there is room for them; what fails is begun again."""
         jetstream, seen = self._server.jetstream, number

@@ -79,6 +79,7 @@ class NumberedLog(ABC):
     def _follow(self, number: int) -> None:
         """Let messages from a number on come to a new `waiting`."""
 
+    @abstractmethod
     def _refill(self) -> None:
         """Take what has come, where nobody else does."""
 
@@ -118,7 +119,9 @@ class NumberedLog(ABC):
         """Refuse a message that leaves bytes out, or that no part of a fleet wrote."""
         if not 0 <= message.at <= position:
             stands = f"stands at byte {message.at}, behind byte {position}" if message.at >= 0 else "states no position"
-            raise FormatError(self._broker, f"{self._title}: message {message.number} {stands}: something else writes there; remove the log")
+            raise FormatError(
+                self._broker, f"{self._title}: message {message.number} {stands}: something else wrote it; begin another fleet"
+            )
 
     def _removed(self, what: str) -> FormatError:
         return FormatError(self._broker, f"{self._title} does not hold {what} any more: the broker kept too little; let it keep more bytes")

@@ -64,7 +64,7 @@ class Broker(ABC):
         made = cls(name)  # type: ignore[call-arg]
         with made._opened():
             entry = made._newest("fleet")
-            known = {"record": record, "n_lanes": n_lanes} if entry is None else json.loads(entry[0])
+            known: dict[str, Any] = {"record": record, "n_lanes": n_lanes} if entry is None else json.loads(entry[0])
             if known["record"]["settings"] != record["settings"] or known["n_lanes"] != n_lanes:
                 raise FormatError(made.name, "holds a fleet of other settings or another number of lanes; choose another NAME")
             made._make(n_lanes)
@@ -198,15 +198,12 @@ class Broker(ABC):
     def n_workers(self) -> int:
         """Workers that said lately that they live; what another left long ago is removed."""
         n = 0
-        try:
-            for member in self._members():
-                entry = self._newest("worker", member)
-                alive = entry is not None and (member == self._me or self._unchanged_s(f"worker.{member}", entry[1]) < LEASE_S)
-                n += alive
-                if not alive:
-                    self._remove("worker", member)
-        except UnreachableError:
-            return max(1, self.n_lanes)
+        for member in self._members():
+            entry = self._newest("worker", member)
+            alive = entry is not None and (member == self._me or self._unchanged_s(f"worker.{member}", entry[1]) < LEASE_S)
+            n += alive
+            if not alive:
+                self._remove("worker", member)
         return n
 
     def _give_back(self) -> None:
@@ -244,16 +241,16 @@ def n_parts(message: bytes) -> int:
     return int(_LENGTH.unpack_from(message, _DIGEST_B)[0])
 
 
-def head(message: bytes) -> bytes:
-    """What all messages of a snapshot begin with."""
-    return message[: _DIGEST_B + _LENGTH.size]
+def digest(message: bytes) -> bytes:
+    """Of the whole snapshot that a message is of."""
+    return message[:_DIGEST_B]
 
 
 def joined(messages: Iterable[bytes | None]) -> bytes | None:
     """The snapshot of its messages in order; None where they are not all of one."""
     present = [message for message in messages if message is not None]
-    whole = b"".join(message.removeprefix(head(message)) for message in present)
-    return whole if present and hashlib.sha256(whole).digest() == present[0][:_DIGEST_B] else None
+    whole = b"".join(message[_DIGEST_B + _LENGTH.size :] for message in present)
+    return whole if present and hashlib.sha256(whole).digest() == digest(present[0]) else None
 
 
 def shown_parts(status: bytes, states: list[bytes]) -> list[bytes]:
