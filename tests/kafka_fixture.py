@@ -77,7 +77,10 @@ class KafkaServer(Server):
         from confluent_kafka import KafkaException, Producer  # noqa: PLC0415
 
         self.process = self._java("kafka.Kafka", str(self._settings))
-        asks, until = Producer({"bootstrap.servers": f"127.0.0.1:{self.port}", "log_level": 0}), time.monotonic() + START_S
+        # The client would wait ten seconds between its tries.
+        tries = {"reconnect.backoff.ms": 50, "reconnect.backoff.max.ms": 200}
+        asks = Producer({"bootstrap.servers": f"127.0.0.1:{self.port}", "log_level": 0, **tries})
+        until = time.monotonic() + START_S
         while time.monotonic() < until and self.process.poll() is None:
             try:
                 if asks.list_topics(timeout=1.0).brokers:

@@ -216,6 +216,7 @@ def test_a_broker_that_dies_under_a_fleet_loses_nothing_and_doubles_nothing(kind
             working.start()
             while worker.n_transitions < 3:
                 time.sleep(0.05)
+            assert feeding.is_alive()
             server.kill()
             time.sleep(1.0)
             server.begin()
@@ -223,7 +224,6 @@ def test_a_broker_that_dies_under_a_fleet_loses_nothing_and_doubles_nothing(kind
             working.join(120.0)
             assert not feeding.is_alive()
             assert not working.is_alive()
-        assert any("stays on the disk" in sentence for sentence in heard)
         assert not any("given back" in sentence or "recovered" in sentence for sentence in heard)
         require_truth(name, n, seconds, seed)
 

@@ -129,7 +129,7 @@ def test_a_worker_keeps_its_lanes_while_nobody_answers(tmp_path: Path, monkeypat
         def n_workers() -> int:
             if silent[0]:
                 raise UnreachableError("nobody answers")
-            return counted()
+            return int(counted())
 
         def stop() -> bool:
             rounds[0] += 1

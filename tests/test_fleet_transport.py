@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -221,6 +222,26 @@ def test_a_server_that_is_not_there_and_a_name_that_is_none_are_refused(scheme: 
     for wrong in ("://127.0.0.1:4222", "://127.0.0.1:4222/a.b", "://127.0.0.1:x/a", ":///a"):
         with pytest.raises(InputError, match=f"{scheme}://host:port/NAME"):
             connect(scheme + wrong)
+
+
+def test_kafka_with_a_password_is_refused_without_printing_it() -> None:
+    pytest.importorskip("confluent_kafka", reason="SKIPPED ALOUD: no client of kafka")
+    with pytest.raises(InputError, match="connections with passwords are not built") as refused:
+        connect("kafka://me:secret@127.0.0.1:1/fleet")
+    assert "secret" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("scheme", "library", "modules"), [("nats", "nats", ["nats"]), ("kafka", "confluent_kafka", ["kafka", "kafka_client"])]
+)
+def test_a_broker_whose_client_is_missing_says_what_to_install(
+    scheme: str, library: str, modules: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for module in modules:
+        monkeypatch.delitem(sys.modules, f"navbound.live.fleet.brokers.{module}", raising=False)
+    monkeypatch.setitem(sys.modules, library, None)
+    with pytest.raises(InputError, match=rf"pip install 'navbound\[{scheme}\]'"):
+        connect(f"{scheme}://127.0.0.1:1/fleet")
 
 
 def test_what_is_no_transport_is_refused(tmp_path: Path) -> None:

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 MOST_RECORD = 8 << 20
 """Bytes of a record; the topics that are made here take it. [B]"""
 AGAIN_S = 0.05
+MAKE_S = 30.0
+"""How long topics may take to be made: a broker that has just started is busy. [s]"""
 FETCH_WAIT_MS = 100
 """How long a broker may hold back an empty answer; a partition that is added to others waits as long. [ms]"""
 _POLL_S = 0.1
@@ -101,16 +103,16 @@ class Client:
         """
         admin = AdminClient(self._settings)
         made = [NewTopic(name, n, config={key: str(value) for key, value in settings.items()}) for name, (n, settings) in topics.items()]
-        for name, done in (admin.create_topics(made, operation_timeout=ANSWER_S) if made else {}).items():
+        for name, done in (admin.create_topics(made, operation_timeout=MAKE_S, request_timeout=2 * MAKE_S) if made else {}).items():
             try:
-                done.result(2 * ANSWER_S)
+                done.result(2 * MAKE_S)
             except TimeoutError as e:
                 raise UnreachableError(f"{self.name} does not make the topic {name}") from e
             except KafkaException as e:
                 # Another part of the fleet may have been faster.
                 if e.args[0].code() != KafkaError.TOPIC_ALREADY_EXISTS:
                     raise FormatError(self.name, f"the topic {name} cannot be made: {e.args[0].str()}") from e
-        until = time.monotonic() + ANSWER_S
+        until = time.monotonic() + MAKE_S
         while topics.keys() - self.topics().keys():
             if time.monotonic() > until:
                 raise UnreachableError(f"{self.name} does not show the topics that were made")
