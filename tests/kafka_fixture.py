@@ -22,7 +22,7 @@ JAVA = ["-Xms128m", "-Xmx384m", "-XX:+UseSerialGC", "-Dorg.slf4j.simpleLogger.de
 
 
 def need(what: str) -> None:
-    """Skip aloud, or fail where the tests were asked for."""
+    """Skip aloud, or fail where the tests are required."""
     text = f"{what}; ./dev test kafka brings a broker (Java 17 and mvn are needed)"
     if os.environ.get("NAVBOUND_NEED_KAFKA") == "1":
         pytest.fail(text)
@@ -59,6 +59,9 @@ class KafkaServer(Server):
                     "transaction.state.log.replication.factor=1",
                     "transaction.state.log.min.isr=1",
                     "auto.create.topics.enable=false",
+                    # One that was killed is let in again once its controller has missed it for so long.
+                    "broker.session.timeout.ms=2000",
+                    "broker.heartbeat.interval.ms=500",
                     "num.network.threads=2",
                     "num.io.threads=2",
                 ]

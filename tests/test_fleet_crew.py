@@ -122,7 +122,7 @@ def test_what_cannot_be_judged_is_an_error_and_not_an_end(tmp_path: Path, monkey
 def test_a_worker_keeps_its_lanes_while_nobody_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It gave them back one by one, and judged them again from their snapshots afterwards."""
     monkeypatch.setattr("navbound.live.fleet.worker.RENEW_S", 0.0)
-    said, rounds, silent = list[str](), [0], [False]
+    sentences, rounds, silent = list[str](), [0], [False]
     with made(str(tmp_path / "fleet")) as transport:
         counted = transport.n_workers
 
@@ -139,7 +139,7 @@ def test_a_worker_keeps_its_lanes_while_nobody_answers(tmp_path: Path, monkeypat
             return rounds[0] == 15
 
         monkeypatch.setattr(transport, "n_workers", n_workers)
-        worker = Worker(transport, say=said.append)
+        worker = Worker(transport, say=sentences.append)
         worker.run(stop=stop)
     assert rounds[0] == 15
-    assert said == []
+    assert sentences == []

@@ -69,7 +69,7 @@ class Kafka(Broker):
     def _make(self, n_lanes: int) -> None:
         there = self.client.topics()
         size: dict[str, object] = {"max.message.bytes": MOST_RECORD}
-        wanted: dict[str, tuple[int, dict[str, object]]] = {
+        required: dict[str, tuple[int, dict[str, object]]] = {
             self._topic("in"): (n_lanes, size | _newest_bytes(shared.MOST_BYTES)),
             self._topic("out"): (n_lanes, size | _newest_bytes(shared.MOST_BYTES)),
             self._topic("snapshots"): (n_lanes, size | _newest_bytes(MOST_KEPT)),
@@ -77,10 +77,10 @@ class Kafka(Broker):
             self._topic("kept"): (1, {"cleanup.policy": "compact", "segment.bytes": _SMALL_SEGMENT, "min.cleanable.dirty.ratio": 0.1}),
         }
         # An operator may have made them with other settings; fewer partitions than lanes are of another fleet.
-        for topic, (n, _) in wanted.items():
+        for topic, (n, _) in required.items():
             if there.get(topic, n) < n:
                 raise FormatError(self.name, f"the topic {topic} has {there[topic]} partitions for {n} lanes; choose another NAME")
-        self.client.make({topic: how for topic, how in wanted.items() if topic not in there})
+        self.client.make({topic: how for topic, how in required.items() if topic not in there})
 
     def _keeps(self) -> Kept | None:
         if self._kept is None and self._topic("kept") in self.client.topics():

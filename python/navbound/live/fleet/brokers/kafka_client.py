@@ -91,7 +91,8 @@ class Client:
 
     def topics(self) -> dict[str, int]:
         """Numbers of partitions of what is there."""
-        return {name: len(entry.partitions) for name, entry in self._asked(lambda: self._producer.list_topics(timeout=1.0)).topics.items()}
+        there = self._answered(lambda: self._producer.list_topics(timeout=1.0))
+        return {name: len(entry.partitions) for name, entry in there.topics.items()}
 
     def make(self, topics: dict[str, tuple[int, dict[str, object]]]) -> None:
         """Make topics of so many partitions with settings, and wait until they are there.
@@ -118,7 +119,7 @@ class Client:
                 raise UnreachableError(f"{self.name} does not show the topics that were made")
             time.sleep(AGAIN_S)
 
-    def _asked(self, question: Callable[[], Any]) -> Any:
+    def _answered(self, question: Callable[[], Any]) -> Any:
         """Ask until there is an answer: a broker that has just started, or a topic, says at first that it is not there."""
         until = time.monotonic() + ANSWER_S
         while True:
@@ -131,7 +132,7 @@ class Client:
 
     def bounds(self, topic: str, lane: int) -> tuple[int, int]:
         """Offset of the first record that is there, and the one behind the last."""
-        low, high = self._asked(lambda: self._looker.get_watermark_offsets(TopicPartition(topic, lane), timeout=1.0))
+        low, high = self._answered(lambda: self._looker.get_watermark_offsets(TopicPartition(topic, lane), timeout=1.0))
         return int(low), int(high)
 
     def write(self, topic: str, lane: int, data: bytes | None, **options: Any) -> None:
@@ -179,7 +180,7 @@ class Client:
 
     def records(self, topic: str, lane: int, begin: int, end: int) -> list[Record]:
         """Records from an offset to before another."""
-        found, until = list[Any](), time.monotonic() + ANSWER_S
+        records, until = list[Any](), time.monotonic() + ANSWER_S
         with self._looking:
             self._looker.assign([TopicPartition(topic, lane, begin)])
             try:
@@ -188,7 +189,7 @@ class Client:
                     if record is not None and record.error() is None and (offset := record.offset()) is not None:
                         # What is left of a place that was looked at before is passed over.
                         if (record.topic(), record.partition()) == (topic, lane) and begin <= offset < end:
-                            found.append(record)
+                            records.append(record)
                             begin = offset + 1
                     elif record is not None and _is_removed(record.error()):
                         raise FormatError(
@@ -198,7 +199,7 @@ class Client:
                         raise UnreachableError(f"{self.name} does not give record {begin} of {topic}/{lane}")
             finally:
                 self._looker.unassign()
-        return found
+        return records
 
     def close(self) -> None:
         """End what was begun."""

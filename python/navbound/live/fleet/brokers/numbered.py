@@ -167,24 +167,24 @@ class NumberedLog(ABC):
     def _place(self, begin: int) -> Message | None:
         """The last message that counts and stands at a position or before it; None in an empty log."""
         first, behind = self._bounds()
-        low, high, found = first, behind, None
+        low, high, place = first, behind, None
         while low < high:
             middle = (low + high) // 2
             message = self._sure(low, middle)
             if message is not None and message.at > begin:
                 high = message.number
                 continue
-            found, low = message or found, middle + 1
-        if found is None:
+            place, low = message or place, middle + 1
+        if place is None:
             if behind == self._first:
                 return None
             raise self._removed(f"what stands at byte {begin}")
         # Those that only the ones before them decide on.
-        for number in range(found.number + 1, high):
+        for number in range(place.number + 1, high):
             message = self._message(number)
-            if message.behind == found.number and message.at <= begin:
-                found = message
-        return found
+            if message.behind == place.number and message.at <= begin:
+                place = message
+        return place
 
     def read(self, begin: int) -> bytes:
         """Frames from a position on: as :class:`navbound.live.fleet.transport.Log` says."""
