@@ -37,7 +37,7 @@ def pretended() -> Iterator[PretendedKafka]:
     with pytest.MonkeyPatch.context() as patched:
         server = PretendedKafka()
         # It holds an empty answer back for all of that time, whatever is written meanwhile.
-        patched.setattr("navbound.live.fleet.brokers.kafka_client.FETCH_WAIT_MS", 5)
+        patched.setattr("navbound.live.fleet.brokers.cluster.FETCH_WAIT_MS", 5)
         yield server
 
 
@@ -231,9 +231,7 @@ def test_kafka_with_a_password_is_refused_without_printing_it() -> None:
     assert "secret" not in str(refused.value)
 
 
-@pytest.mark.parametrize(
-    ("scheme", "library", "modules"), [("nats", "nats", ["nats"]), ("kafka", "confluent_kafka", ["kafka", "kafka_client"])]
-)
+@pytest.mark.parametrize(("scheme", "library", "modules"), [("nats", "nats", ["nats"]), ("kafka", "confluent_kafka", ["kafka", "cluster"])])
 def test_a_broker_whose_client_is_missing_says_what_to_install(
     scheme: str, library: str, modules: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -2,7 +2,7 @@
 
 Kafka writes every record that comes, so nothing of it can be written on a condition. A record of a log names the one that it was written
 behind, and of two that name the same one the first counts (`numbered`): the order of a partition is the same for all who read it, so all
-know which that is, and the writer of the other learns it before it goes on. Leases follow from the same order (`kafka_log.Kept`). No
+know which that is, and the writer of the other learns it before it goes on. Leases follow from the same order (`partition.Kept`). No
 transaction, no group and no number of a producer takes part, so nothing of them can expire while a broker is away.
 
 What cannot be had: a record that does not count stays in its topic, and who reads there without this library must apply the rule; what a
@@ -21,8 +21,8 @@ from urllib.parse import urlsplit
 
 from navbound.errors import FormatError, InputError
 from navbound.live.fleet.brokers import shared
-from navbound.live.fleet.brokers.kafka_client import MOST_RECORD, Client, Following, header, partitions
-from navbound.live.fleet.brokers.kafka_log import KafkaLog, Kept
+from navbound.live.fleet.brokers.cluster import MOST_RECORD, Client, Following, header, partitions
+from navbound.live.fleet.brokers.partition import KafkaLog, Kept
 from navbound.live.fleet.brokers.shared import CONNECT_S, Broker
 from navbound.live.fleet.transport import WAIT_S, UnreachableError
 

@@ -25,7 +25,7 @@ try:
 except ImportError as e:  # pragma: no cover - an environment without the extra
     raise InputError("to", "nats://", domain="a folder, unless pip install 'navbound[nats]' has brought the client of NATS") from e
 
-from navbound.live.fleet.brokers.nats_log import WRONG_SEQUENCE, NatsLog
+from navbound.live.fleet.brokers.stream import WRONG_SEQUENCE, NatsLog
 
 if TYPE_CHECKING:
     from collections.abc import Coroutine

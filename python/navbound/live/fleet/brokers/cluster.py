@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from confluent_kafka import Message as Record
 
-    from navbound.live.fleet.brokers.kafka_log import KafkaLog
+    from navbound.live.fleet.brokers.partition import KafkaLog
 
 MOST_RECORD = 8 << 20
 """Bytes of a record; the topics that are made here take it. [B]"""

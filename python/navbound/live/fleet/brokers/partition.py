@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from confluent_kafka import KafkaError, TopicPartition
 
-from navbound.live.fleet.brokers.kafka_client import Client, header
+from navbound.live.fleet.brokers.cluster import Client, header
 from navbound.live.fleet.brokers.numbered import AT, Message, NumberedLog, position
 from navbound.live.fleet.brokers.shared import ANSWER_S
 from navbound.live.fleet.transport import UnreachableError
