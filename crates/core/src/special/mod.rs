@@ -17,6 +17,7 @@ pub(crate) mod quadrature;
 pub mod radius;
 pub(crate) mod root;
 pub(crate) mod student;
+pub(crate) mod widest;
 
 pub use folded::FoldedQuantile;
 pub use normal::{one_sided_factor, tail, two_sided_factor};

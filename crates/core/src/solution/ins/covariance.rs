@@ -4,7 +4,8 @@
 //! for one scalar as a symmetric change of rank two, so that it is symmetric to the last bit and a rounding of the gain enters only by its
 //! square. A test runs millions of updates and takes Cholesky's factor along the way.
 
-use super::dynamics::{MOTION, NAV, Transition, decay};
+use super::dynamics::{MOTION, NAV, PHI, R, Transition, V, decay};
+use crate::special::widest::widest;
 use nalgebra::{Matrix3, Vector3};
 
 /// Columns of the navigation block, one of them empty: whole vectors.
@@ -37,6 +38,7 @@ impl Row {
     pub(super) fn with_block(self, first: usize, values: &nalgebra::Vector3<f64>) -> Self {
         self.with(first, values.x).with(first + 1, values.y).with(first + 2, values.z)
     }
+    #[inline(always)]
     fn entries(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.index[..self.n].iter().copied().zip(self.value[..self.n].iter().copied())
     }
@@ -124,6 +126,14 @@ impl Joint {
 
     /// One step in time of the navigation states; what further states share with them waits for [`Joint::settle`].
     pub(super) fn propagate(&mut self, t: &Transition, noise: &StepNoise) {
+        widest(
+            #[inline(always)]
+            || self.step(t, noise),
+        );
+    }
+
+    #[inline(always)]
+    fn step(&mut self, t: &Transition, noise: &StepNoise) {
         self.half_noise(noise);
         let carried = carry(t, &self.p);
         for i in 0..MOTION {
@@ -160,6 +170,7 @@ impl Joint {
         }
     }
 
+    #[inline(always)]
     fn remember(&mut self, t: &Transition, fade: [f64; 2]) {
         let carried = carry(t, &self.pending);
         self.pending[..MOTION].copy_from_slice(&carried);
@@ -173,6 +184,14 @@ impl Joint {
     /// Bring the further states up to date: their own change, given one by one, and the transitions kept since the last time. Exact: one
     /// acts on the rows and the other on the columns, so that the order does not matter.
     pub(super) fn settle(&mut self, fades: &[Fade]) {
+        widest(
+            #[inline(always)]
+            || self.settled(fades),
+        );
+    }
+
+    #[inline(always)]
+    fn settled(&mut self, fades: &[Fade]) {
         let n = fades.len();
         for c in BASE..BASE + n {
             let before: [f64; NAV] = core::array::from_fn(|k| self.p[k][c]);
@@ -226,6 +245,19 @@ impl Joint {
 
     /// P h'.
     pub(super) fn times(&self, h: &Row) -> [f64; WIDTH] {
+        widest(
+            #[inline(always)]
+            || self.product(h),
+        )
+    }
+
+    /// h P h'.
+    pub(super) fn variance(&self, h: &Row) -> f64 {
+        h.entries().map(|(j, value)| value * h.entries().map(|(k, value)| value * self.p[k][j]).sum::<f64>()).sum()
+    }
+
+    #[inline(always)]
+    fn product(&self, h: &Row) -> [f64; WIDTH] {
         let mut u = [0.0; WIDTH];
         for (k, value) in h.entries() {
             for j in 0..self.used {
@@ -242,19 +274,29 @@ impl Joint {
     /// P <- (1 - K h) P (1 - K h)' + K r K'  =  P - (K t' + t K'),   t = u - s K / 2      for any K
     /// ```
     pub(super) fn update(&mut self, h: &Row, innovation: f64, r: f64, x: &mut [f64; WIDTH]) -> bool {
-        let u = self.times(h);
+        widest(
+            #[inline(always)]
+            || self.updated(h, innovation, r, x),
+        )
+    }
+
+    #[inline(always)]
+    fn updated(&mut self, h: &Row, innovation: f64, r: f64, x: &mut [f64; WIDTH]) -> bool {
+        let u = self.product(h);
         let s = h.of(&u) + r;
-        // What rounding may take from a variance is not left of it: nothing is changed.
-        let sound = |k: usize| self.p[k][k] - u[k] * u[k] / s > 8.0 * f64::EPSILON * self.p[k][k];
-        if !(s < f64::INFINITY && innovation.is_finite() && (0..self.used).all(|k| self.p[k][k] == 0.0 || sound(k))) {
-            return false;
-        }
-        let left = innovation - h.of(x);
         let n = self.used;
         let (mut gain, mut t) = ([0.0; WIDTH], [0.0; WIDTH]);
         for j in 0..n {
             gain[j] = u[j] / s;
             t[j] = u[j] - 0.5 * s * gain[j];
+        }
+        // What rounding may take from a variance is not left of it: nothing is changed.
+        let sound = |k: usize| self.p[k][k] - u[k] * gain[k] > 8.0 * f64::EPSILON * self.p[k][k];
+        if !(s < f64::INFINITY && innovation.is_finite() && (0..n).all(|k| self.p[k][k] == 0.0 || sound(k))) {
+            return false;
+        }
+        let left = innovation - h.of(x);
+        for j in 0..n {
             x[j] += gain[j] * left;
         }
         for i in 0..n {
@@ -285,11 +327,13 @@ const TO_PHI: [usize; 12] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11];
 /// Phi m, motion rows, the columns of the navigation states.
 #[inline(always)]
 fn carry<const W: usize, const H: usize>(t: &Transition, m: &[[f64; W]; H]) -> [[f64; BASE]; MOTION] {
-    core::array::from_fn(|i| match i / 3 {
-        0 => line(t, i, &TO_R, m),
-        1 => line(t, i, &TO_V, m),
-        _ => line(t, i, &TO_PHI, m),
-    })
+    let mut carried = [[0.0; BASE]; MOTION];
+    for k in 0..3 {
+        carried[R + k] = line(t, R + k, &TO_R, m);
+        carried[V + k] = line(t, V + k, &TO_V, m);
+        carried[PHI + k] = line(t, PHI + k, &TO_PHI, m);
+    }
+    carried
 }
 
 #[inline(always)]

@@ -381,7 +381,7 @@ impl Filter {
 
     /// Variance of an innovation.
     pub(super) fn variance(&self, row: &Row, r: f64) -> f64 {
-        row.of(&self.joint.times(row)) + r
+        self.joint.variance(row) + r
     }
 
     /// Scalars of one measurement, their errors independent, one after the other; then the state takes the correction.

@@ -101,11 +101,9 @@ impl Modes {
     /// Time passes: an aided mode is left `lose_s` after it was last possible, and entered when it has been possible for `gain_s`; the
     /// first mode of all is entered at once.
     pub(super) fn tick(&mut self, now: GpsTime) {
-        let possible = [
-            self.vor.count(now) >= 1 && self.dme.count(now) >= 1,
-            self.dme.count(now) >= 2,
-            self.fix.count(now) >= 1 || self.satellites.count(now) >= SATELLITES,
-        ];
+        let dme = self.dme.count(now);
+        let possible =
+            [dme >= 1 && self.vor.count(now) >= 1, dme >= 2, self.fix.count(now) >= 1 || self.satellites.count(now) >= SATELLITES];
         let first = self.last.iter().all(Option::is_none);
         for k in 0..3 {
             if possible[k] {
