@@ -61,8 +61,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--write", action="store_true", help="keep the counts of this machine's compiler")
     parser.add_argument("--quiet", action="store_true", help="print only what keeps the check from passing")
-    asked = parser.parse_args()
-    write = asked.write
+    options = parser.parse_args()
+    write = options.write
     if shutil.which("valgrind") is None:
         sys.exit("SKIPPED ALOUD: valgrind is missing, instructions are NOT counted")
     kept = {} if write else json.loads(KEPT.read_text(encoding="utf-8"))
@@ -70,7 +70,7 @@ def main() -> None:
         print(f"SKIPPED ALOUD: counts are kept of {kept['compiler']}, and the compiler is {compiler()}: they are not comparable")
         return
     now = counted()
-    for name, n in now.items() if not asked.quiet else ():
+    for name, n in now.items() if not options.quiet else ():
         before = kept.get("instructions", {}).get(name)
         print(f"{name:32} {n:>12}" + ("" if before is None else f"   {n / before:.3f} of what is kept"))
     if write:

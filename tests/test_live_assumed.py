@@ -64,6 +64,20 @@ def test_a_receiver_that_falls_silent_is_no_better_than_its_last_statement(tmp_p
     assert set(epochs["alert"][40:]) == {"warning"}
 
 
+@pytest.mark.parametrize("every", [2, 5])
+def test_an_accuracy_that_comes_at_some_epochs_alone_is_not_lost(tmp_path: Path, every: int) -> None:
+    """Behind a position that was complete by habit: the first one is counted, and the source has no habit from then on."""
+    text = ""
+    for k in range(N):
+        time = f"1200{k:02d}.00"
+        text += sentence(f"GPRMC,{time},A,48{k / 30 + 10:08.5f},N,00230.0000,E,120.0,0.0,010624,,,A")
+        text += sentence(f"GPGGA,{time},48{k / 30 + 10:08.5f},N,00230.0000,E,1,08,1.0,100.0,M,45.0,M,,")
+        text += sentence(f"GPGST,{time},1.0,900.0,900.0,0.0,900.0,900.0,900.0") if k % every == 1 else ""
+    (tmp_path / "log.nmea").write_text(text)
+    epochs = lived(tmp_path / "log.nmea", tmp_path / "out", live.Settings(format="nmea", rnp_m=0.3 * 1852.0, sigma_m=SIGMA_M))
+    assert epochs["cov_nn_m2"].sqrt().to_list()[every + 1 :] == pytest.approx([900.0] * (N - every - 1))
+
+
 def test_a_session_that_was_stopped_goes_on_with_what_was_stated(tmp_path: Path) -> None:
     whole = watched(tmp_path, {10: 400.0})
     settings, data = live.Settings(format="nmea", rnp_m=0.3 * 1852.0, sigma_m=SIGMA_M), (tmp_path / "log.nmea").read_bytes()

@@ -217,5 +217,5 @@ def test_rinex_observations_are_judged_as_a_track(shared_data: Path, tmp_path: P
     # Two epochs have an exclusion that the few ranges left cannot confirm.
     assert (run.summary.verdict.n_judged, run.summary.verdict.n_degraded, run.summary.verdict.inside) == (118, 2, True)
     assert {Path(source.path).name for source in run.record.inputs} == {"arlm200x.15o", "arlm2000.15n"}
-    with pytest.raises(InputError, match="together with RINEX observations"):
+    with pytest.raises(InputError, match="holds no observations and no positions: name a RINEX observation file"):
         navbound.analyze(folder / "arlm2000.15n")

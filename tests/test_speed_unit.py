@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import navbound
+from navbound.read.beside import speed_unit
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -103,3 +104,18 @@ def test_pieces_of_any_length_decide_the_same(tmp_path: Path, piece_rows: int) -
     speeds = [each for piece in reading.epochs() for each in piece["ground_speed_mps"].to_list()]
     reading.pieces.close()
     assert speeds == whole.epochs["ground_speed_mps"].to_list()
+
+
+def test_a_recording_that_begins_at_the_gate_is_decided_by_what_moves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """More rows of taxiing than decide, and then half of the speed, or none of it."""
+    monkeypatch.setattr(speed_unit, "HEAD_ROWS", 100)
+    speed = [6.0] * 150 + [120.0] * 250
+    assert analysed(tmp_path, "speed", speed, speed).summary.verdict.id == "inside"
+    for mps in (66.0, 0.0):
+        slow = [6.0] * 150 + [120.0] * 50 + [mps + 0.1 * (-1) ** k for k in range(200)]
+        assert analysed(tmp_path, "speed", speed, slow).summary.verdict.id == "not_shown", mps
+
+
+def test_positions_of_a_slow_vehicle_that_stand_beside_its_speed_show_nothing(tmp_path: Path) -> None:
+    assert analysed(tmp_path, "speed", [12.0] * N, [0.1 * (-1) ** k for k in range(N)]).summary.verdict.id == "not_shown"
+    assert analysed(tmp_path, "speed", [12.0] * N, [12.0] * N).summary.verdict.id == "inside"

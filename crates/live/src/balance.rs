@@ -72,7 +72,8 @@ impl Balance {
         self.behind()
     }
 
-    fn behind(&self) -> bool {
+    /// Whether the positions are behind, by all that was seen.
+    pub(crate) fn behind(&self) -> bool {
         let [way_m, by_speed_m] = self.of_all;
         by_speed_m - way_m > LACK_M + LACK_SHARE * by_speed_m
     }

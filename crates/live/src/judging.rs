@@ -131,9 +131,12 @@ fn believed(settings: &Settings, track: &mut Track, position: &Position) -> Posi
     };
     // A position that is merely late may contradict those before it all the same: the graver word counts.
     let reason = if finding == Some(Reason::PositionLate) { restless().or(finding) } else { finding.or_else(restless) };
-    // What is doubted by itself is no part of the way; the time goes on over it.
-    let mut behind = || track.balance.see(At { time_ns: position.time.nanoseconds(), lat_rad, lon_rad, speed_mps });
-    let reason = reason.or_else(|| behind().then_some(Reason::PositionStale));
+    // What is doubted by itself is no part of the way; the time goes on over it. What is behind stays so where it is held besides.
+    let behind = match reason {
+        None => track.balance.see(At { time_ns: position.time.nanoseconds(), lat_rad, lon_rad, speed_mps }),
+        Some(reason) => reason.status().usable() && track.balance.behind(),
+    };
+    let reason = if behind { Some(Reason::PositionStale) } else { reason };
     reason.map_or(*position, |reason| position.without(reason))
 }
 

@@ -46,6 +46,8 @@ pub(super) fn write(decoder: &Decoder, to: &mut Writer) {
     }
     to.u32(state.newest);
     to.u32(state.last);
+    to.option(state.finished, Writer::i64);
+    to.flag(state.waits);
     to.option(dated, |to, Dated { year, month, day, of_day: OfDay(of_day_ns) }| {
         to.i64(i64::from(year));
         to.u8(month);
@@ -61,7 +63,8 @@ pub(super) fn read(kind: Kind, from: &mut Reader<'_>) -> Result<Decoder, Damaged
     }
     let messages = (0..n).map(|_| Ok(Message { kind: from.u32()?, record: from.u64()?, body: from.bytes()?.to_vec() }));
     let messages = messages.collect::<Result<_, _>>()?;
-    let state = State { key, messages, newest: from.u32()?, last: from.u32()? };
+    let (newest, last, finished, waits) = (from.u32()?, from.u32()?, from.option(Reader::i64)?, from.flag()?);
+    let state = State { key, messages, newest, last, finished, waits };
     let dated = from.option(|from| {
         let (year, month, day) = (i32::try_from(from.i64()?).map_err(|_| Damaged("not a year"))?, from.u8()?, from.u8()?);
         Ok(Dated { year, month, day, of_day: OfDay(from.i64()?) })

@@ -21,16 +21,18 @@ if TYPE_CHECKING:
 SPEED = "__speed"
 """Column of the numbers until their unit is known."""
 HEAD_ROWS = 5000
-"""Rows of a file, from its first on, that decide: the same in pieces of any length. Provenance: ours. [1]"""
+"""Rows of a file that decide, the first ones that may be of a moving vehicle: the same in pieces of any length. Provenance: ours. [1]"""
+_SAYS = 10.0
+"""A number below it is a slow speed in every unit: a file that begins at the gate says nothing until it moves. Provenance: ours. [1]"""
 _UNITS = ("mps", "kt", "km/h", "mph")
 _WINDOW_NS = 10_000_000_000
 _LONGEST_NS = 3 * _WINDOW_NS
 """Ways are looked at over 10 s and at most 30 s, so that noise and rounding of positions do not count. Provenance: ours. [ns]"""
-_MOVING_MPS = 10.0
+_MOVING_MPS = 5.0
 """Slower ways say little beside the noise of positions. Provenance: ours. [m/s]"""
 _NEAR, _NOISE_MPS = 0.06, 1.0
 """A speed fits within this share, as knots and miles an hour are 15 % apart, and the noise of a way. Provenance: ours. [1, m/s]"""
-_SLOWEST_MPS, _STANDS = 5.0, 0.5
+_SLOWEST_MPS, _STANDS = 3.0, 0.5
 """A speed that is this or more in the smallest of the units, over a way of less than this share of it, fits in none. Ours. [m/s, 1]"""
 _MOST = 0.5
 """Share of the ways that a speed fits in its unit. Provenance: ours. [1]"""
@@ -65,9 +67,9 @@ class SpeedUnit:
         return pl.select(pl.when(values.is_finite() & (values >= 0.0)).then(values).alias(SPEED)).to_series()
 
     def see(self, part: pl.DataFrame) -> None:
-        """The next rows, with their positions, numbers and times as they are written; the first of the file are kept."""
+        """The next rows, with their positions, numbers and times as they are written; the first of the file that say much are kept."""
         if self._n_rows < HEAD_ROWS:
-            self._head.append(part.head(HEAD_ROWS - self._n_rows))
+            self._head.append(part.filter(pl.col(SPEED) >= _SAYS).head(HEAD_ROWS - self._n_rows))
             self._n_rows += self._head[-1].height
 
     def head(self) -> pl.DataFrame:
@@ -77,8 +79,7 @@ class SpeedUnit:
     def understand(self, timed: pl.DataFrame) -> None:
         """Decide by the head with `track` and `time_ns`."""
         self._head = []
-        # Of a column of zeros nobody knows whether it states anything.
-        rows = timed.drop_nulls(["time_ns", "est_lat_rad", "est_lon_rad", SPEED]).filter(pl.col(SPEED) > 0.0)
+        rows = timed.drop_nulls(["time_ns", "est_lat_rad", "est_lon_rad", SPEED])
         rows = rows.sort("track", "time_ns", maintain_order=True)
         window = (pl.col("time_ns") // _WINDOW_NS).alias("window")
         first = rows.group_by("track", window, maintain_order=True).agg(

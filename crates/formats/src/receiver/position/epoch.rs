@@ -34,6 +34,10 @@ pub struct State {
     pub newest: u32,
     /// Kind of the last message of the epoch before.
     pub last: u32,
+    /// The epoch that was finished at its last message by habit.
+    pub finished: Option<i64>,
+    /// A message came behind its finished epoch: the source has no habit, and every epoch waits for the next one.
+    pub waits: bool,
 }
 
 /// Messages of one epoch.
@@ -81,6 +85,7 @@ impl Epoch {
     /// A message of the epoch `key` that is not kept.
     pub(super) fn pass(&mut self, key: i64, kind: u32) {
         if self.state.key != Some(key) {
+            self.state.waits |= self.state.finished == Some(key);
             (self.state.key, self.state.last) = (Some(key), self.state.newest);
         }
         self.state.newest = kind;
@@ -88,12 +93,12 @@ impl Epoch {
 
     /// Whether the newest message was the last by habit.
     pub(super) fn at_last(&self) -> bool {
-        self.ends == Ends::WithLast && self.state.key.is_some() && self.state.newest == self.state.last
+        self.ends == Ends::WithLast && !self.state.waits && self.state.key.is_some() && self.state.newest == self.state.last
     }
 
     /// What there is: the epoch is finished.
     pub(super) fn take(&mut self) -> Vec<Message> {
-        self.state.key = None;
+        self.state.finished = self.state.key.take();
         std::mem::take(&mut self.state.messages)
     }
 }
