@@ -77,7 +77,7 @@ class Repeats:
     @property
     def unjudged(self) -> pl.DataFrame:
         """Rows left out of which each is an epoch that is expected and cannot be judged."""
-        unjudged = [self.kinds[words] for words in UNJUDGED if words in self.kinds]
+        unjudged = [self.kinds[kind] for kind in UNJUDGED if kind in self.kinds]
         return pl.concat(unjudged) if unjudged else self.epochs.clear()
 
 

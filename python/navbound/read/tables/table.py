@@ -305,13 +305,13 @@ def _require_line_ends(path: Path, lines: pl.DataFrame, text: pl.Expr) -> None:
 
 def _cells(line: str, separator: str) -> list[str]:
     """The fields of a line as they are written; a separator between quotation marks ends none."""
-    fields = [""]
+    fields = [list[str]()]
     for part in re.findall(rf'"[^"]*"|[^"{re.escape(separator)}]+|"|{re.escape(separator)}', line):
         if part == separator:
-            fields.append("")
+            fields.append([])
         else:
-            fields[-1] += part
-    return fields
+            fields[-1].append(part)
+    return ["".join(parts) for parts in fields]
 
 
 def _names(path: Path, header: str, separator: str, declared: Iterable[str]) -> list[str]:
