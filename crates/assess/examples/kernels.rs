@@ -12,9 +12,12 @@ use navbound_core::monitor::rnp::{Chain, Monitor, Observation, Settings};
 use navbound_core::quantity::{GpsTime, Metres, Radians, Risk};
 use navbound_core::signal::Constellation;
 use navbound_core::solution::Epoch;
-use navbound_simulate::{BelievedErrors, Coupling, Navigator, Scenario, Sensing, Sensors};
+use navbound_simulate::{Scenario, Sensing, Sensors};
 use std::error::Error;
 use std::hint::black_box;
+
+#[path = "../../core/tests/common/sky.rs"]
+mod sky;
 
 /// Calls of a bound.
 const MANY: u32 = 100;
@@ -68,26 +71,13 @@ fn bounds() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Azimuth and elevation in degrees, sigma in metres.
-const SKY: [(f64, f64, f64); 9] = [
-    (10.0, 70.0, 1.2),
-    (65.0, 20.0, 2.0),
-    (120.0, 45.0, 1.4),
-    (170.0, 12.0, 3.1),
-    (215.0, 33.0, 1.7),
-    (260.0, 8.0, 3.9),
-    (305.0, 55.0, 1.3),
-    (345.0, 25.0, 1.9),
-    (30.0, 40.0, 1.5),
-];
-
 /// An algorithm's levels of nine satellites by its usual settings.
 struct Levels;
 
 impl Task for Levels {
     type Output = ();
     fn with<A: Algorithm>(self) {
-        let sights = SKY.map(|(az, el, sigma)| {
+        let sights = sky::SKY.map(|(az, el, sigma)| {
             let (az, el) = (f64::to_radians(az), f64::to_radians(el));
             let unit = Vector3::new(el.cos() * az.sin(), el.cos() * az.cos(), el.sin());
             let plain = Sight::plain(unit, Constellation::Gps, sigma * sigma);
@@ -123,20 +113,7 @@ fn flight() -> Result<(), Box<dyn Error>> {
     sensors.rate_hz = 10;
     scenario.sensors = Some(sensors);
     scenario.faults.clear();
-    scenario.filter = Some(Navigator {
-        start_factor: [1.0; 3],
-        unit_factor: 1.0,
-        mode: BelievedErrors::Correlated,
-        form: Coupling::Tight,
-        reversion: true,
-        separation_risk: 1e-7,
-        gate_risk: 1e-4,
-        samples_per_step: 1,
-        restart_after_s: 60.0,
-        position_sigma_m: [10.0, 10.0, 15.0],
-        velocity_sigma_mps: 0.2,
-        attitude_sigma_rad: [5e-5, 5e-5, 5e-4],
-    });
+    scenario.filter = Some(serde_json::from_str(include_str!("../../simulate/tests/filter.json"))?);
     let sensing = Sensing::new(scenario, None)?;
     let path = sensing.trajectory(5, 3)?;
     // Once: what is prepared within it is nothing beside the rest.

@@ -3,7 +3,7 @@
 
 use navbound_assess::flights::COLUMNS;
 use navbound_assess::fused::{Fused, navigate};
-use navbound_simulate::{BelievedErrors, Coupling, Navigator, Scenario, Sensing, Sensors, Trajectory};
+use navbound_simulate::{Scenario, Sensing, Sensors, Trajectory};
 
 /// Fifteen minutes at ten samples a second.
 fn sensing(change: impl FnOnce(&mut Sensors)) -> Sensing {
@@ -13,20 +13,7 @@ fn sensing(change: impl FnOnce(&mut Sensors)) -> Sensing {
     change(&mut sensors);
     scenario.sensors = Some(sensors);
     scenario.faults.clear();
-    scenario.filter = Some(Navigator {
-        start_factor: [1.0; 3],
-        unit_factor: 1.0,
-        mode: BelievedErrors::Correlated,
-        form: Coupling::Tight,
-        reversion: true,
-        separation_risk: 1e-7,
-        gate_risk: 1e-4,
-        samples_per_step: 1,
-        restart_after_s: 60.0,
-        position_sigma_m: [10.0, 10.0, 15.0],
-        velocity_sigma_mps: 0.2,
-        attitude_sigma_rad: [5e-5, 5e-5, 5e-4],
-    });
+    scenario.filter = Some(serde_json::from_str(include_str!("../../simulate/tests/filter.json")).unwrap());
     Sensing::new(scenario, None).unwrap()
 }
 

@@ -1,23 +1,11 @@
 //! Every algorithm of protection levels from satellites keeps the family's promises, and one more needs nothing but its own lines.
 #![allow(clippy::unwrap_used, clippy::panic)] // A test may stop at the first surprise, in its helpers too.
 
+use crate::common::sky::SKY;
 use nalgebra::Vector3;
 use navbound_core::bound::{ALGORITHMS, Algorithm, Levels, NoLevels, Protection, Provenance, Ranges, Sight, Task, with_algorithm};
 use navbound_core::quantity::{Metres, Unavailable};
 use navbound_core::signal::Constellation;
-
-/// Azimuth and elevation in degrees, sigma in metres.
-const SKY: [(f64, f64, f64); 9] = [
-    (10.0, 70.0, 1.2),
-    (65.0, 20.0, 2.0),
-    (120.0, 45.0, 1.4),
-    (170.0, 12.0, 3.1),
-    (215.0, 33.0, 1.7),
-    (260.0, 8.0, 3.9),
-    (305.0, 55.0, 1.3),
-    (345.0, 25.0, 1.9),
-    (30.0, 40.0, 1.5),
-];
 
 /// The sky turned by an angle, with all lengths times a factor.
 fn sky(turned_deg: f64, factor: f64) -> Vec<Sight> {

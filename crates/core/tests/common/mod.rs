@@ -1,6 +1,8 @@
 //! What several tests of the judge share.
 #![allow(clippy::unwrap_used, reason = "a helper of tests may stop at the first surprise, too")]
 
+pub(crate) mod sky;
+
 use navbound_core::bound::Alerting;
 use navbound_core::judge::Settings;
 use navbound_core::monitor::rnp::{Chain, Settings as MonitorSettings};
