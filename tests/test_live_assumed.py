@@ -78,6 +78,21 @@ def test_an_accuracy_that_comes_at_some_epochs_alone_is_not_lost(tmp_path: Path,
     assert epochs["cov_nn_m2"].sqrt().to_list()[every + 1 :] == pytest.approx([900.0] * (N - every - 1))
 
 
+def test_nothing_stands_in_for_an_accuracy_that_no_position_took(tmp_path: Path) -> None:
+    """GST with a time of its own leaves the positions behind it without a bound; one of an ellipse alone is counted."""
+    text = ""
+    for k in range(N):
+        text += sentence(f"GPRMC,1200{k:02d}.00,A,48{k / 30 + 10:08.5f},N,00230.0000,E,120.0,0.0,010624,,,A")
+        text += sentence(f"GPGGA,1200{k:02d}.00,48{k / 30 + 10:08.5f},N,00230.0000,E,1,08,1.0,100.0,M,45.0,M,,")
+        text += sentence(f"GPGST,1200{k:02d}.20,1.0,900.0,900.0,0.0,900.0,900.0,900.0")
+    (tmp_path / "log.nmea").write_text(text)
+    settings = live.Settings(format="nmea", rnp_m=0.3 * 1852.0, sigma_m=SIGMA_M)
+    assert set(lived(tmp_path / "log.nmea", tmp_path / "out", settings)["reason_id"][3:]) == {"no_covariance"}
+    lane = _core.LiveLane(settings.core())
+    lane.push(_core.live_input("chunk", None, sentence("GPGST,120000.00,9.0,900.0,900.0,0.0,,,").encode()), 0, 0)
+    assert lane.counters()["refused_short_message"] == 1
+
+
 def test_a_session_that_was_stopped_goes_on_with_what_was_stated(tmp_path: Path) -> None:
     whole = watched(tmp_path, {10: 400.0})
     settings, data = live.Settings(format="nmea", rnp_m=0.3 * 1852.0, sigma_m=SIGMA_M), (tmp_path / "log.nmea").read_bytes()

@@ -11,18 +11,28 @@ type Terms = [f64; 6];
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Assumed(pub Metres);
 
+/// What a source has stated of its accuracy itself.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Stated {
+    /// The largest horizontal variance that it stated last \[m²\].
+    pub(crate) largest_m2: Option<f64>,
+    /// Whether a statement came since that no position took.
+    pub(crate) lost: bool,
+}
+
 impl Assumed {
-    /// The position with an accuracy that is no smaller than the one that is assumed, nor than what its source states, or stated last
-    /// (`stated_m2`): an assumption completes a source and does not overrule a larger number of it.
+    /// The position with an accuracy that is no smaller than the one that is assumed, nor than what its source states, or stated last: an
+    /// assumption completes a source and does not overrule a larger number of it. Nor one that was lost: it stands in for nothing then.
     #[must_use]
-    pub(crate) fn completed(self, position: &Position, stated_m2: &mut Option<f64>) -> Position {
+    pub(crate) fn completed(self, position: &Position, stated: &mut Stated) -> Position {
         let least_m2 = self.0.m() * self.0.m();
         let Some(terms) = position.covariance_m2 else {
-            return Position { covariance_m2: Some(circle(stated_m2.map_or(least_m2, |stated| stated.max(least_m2)))), ..*position };
+            let variance_m2 = stated.largest_m2.map_or(least_m2, |stated| stated.max(least_m2));
+            return Position { covariance_m2: (!stated.lost).then(|| circle(variance_m2)), ..*position };
         };
         // What is no covariance stays for the judge to refuse: the source contradicts itself, and nothing stands in for that.
         let Some([smallest, largest]) = horizontal(terms) else { return *position };
-        *stated_m2 = Some(largest);
+        *stated = Stated { largest_m2: Some(largest), lost: false };
         let covariance_m2 = if smallest >= least_m2 { terms } else { circle(largest.max(least_m2)) };
         Position { covariance_m2: Some(covariance_m2), ..*position }
     }
@@ -48,9 +58,9 @@ mod tests {
     use crate::position::TrackId;
     use navbound_core::quantity::GpsTime;
 
-    fn completed(covariance_m2: Option<Terms>, stated_m2: &mut Option<f64>) -> Terms {
+    fn completed(covariance_m2: Option<Terms>, stated: &mut Stated) -> Terms {
         let position = Position { covariance_m2, ..Position::new(TrackId::new("a").unwrap(), GpsTime::from_nanoseconds(0)) };
-        Assumed(Metres::new(5.0)).completed(&position, stated_m2).covariance_m2.unwrap()
+        Assumed(Metres::new(5.0)).completed(&position, stated).covariance_m2.unwrap_or([f64::NAN; 6])
     }
 
     fn plane(terms: Terms) -> [f64; 3] {
@@ -60,7 +70,7 @@ mod tests {
 
     #[test]
     fn the_larger_of_what_is_assumed_and_what_is_stated_counts() {
-        let mut stated = None;
+        let mut stated = Stated::default();
         assert_eq!(plane(completed(None, &mut stated)), [25.0, 0.0, 25.0]);
         assert_eq!(plane(completed(Some(circle(1.0)), &mut stated)), [25.0, 0.0, 25.0]);
         let larger = [100.0, 20.0, 400.0, 0.0, 0.0, 900.0];
@@ -72,7 +82,7 @@ mod tests {
 
     #[test]
     fn a_source_that_states_no_more_is_no_better_than_its_last_statement() {
-        let mut stated = None;
+        let mut stated = Stated::default();
         let _ = completed(Some(circle(10_000.0)), &mut stated);
         assert_eq!(plane(completed(None, &mut stated)), [10_000.0, 0.0, 10_000.0]);
         let _ = completed(Some(circle(1.0)), &mut stated);
@@ -80,9 +90,17 @@ mod tests {
     }
 
     #[test]
+    fn nothing_stands_in_for_a_statement_that_no_position_took() {
+        let mut stated = Stated { largest_m2: Some(1.0), lost: true };
+        assert!(completed(None, &mut stated)[0].is_nan());
+        assert_eq!(plane(completed(Some(circle(900.0)), &mut stated)), [900.0, 0.0, 900.0]);
+        assert_eq!(plane(completed(None, &mut stated)), [900.0, 0.0, 900.0]);
+    }
+
+    #[test]
     fn what_is_no_covariance_is_left_to_be_refused() {
         for terms in [[f64::NAN; 6], circle(0.0), circle(-1.0), [1.0, 2.0, 1.0, 0.0, 0.0, 1.0], [900.0, 0.0, 900.0, 0.0, 0.0, -1.0]] {
-            assert_eq!(completed(Some(terms), &mut None).map(f64::to_bits), terms.map(f64::to_bits));
+            assert_eq!(completed(Some(terms), &mut Stated::default()).map(f64::to_bits), terms.map(f64::to_bits));
         }
     }
 }

@@ -142,7 +142,7 @@ fn believed(settings: &Settings, track: &mut Track, position: &Position) -> Posi
 
 /// Judges a record and says what became of it. A fault of ours makes this epoch of this track unusable, and nothing else; whether one happened.
 pub(crate) fn judge(settings: &Settings, id: TrackId, track: &mut Track, arrived: &Arrived, out: &mut Vec<Output>, fault: bool) -> bool {
-    let position = settings.assumed.map_or(arrived.position, |assumed| assumed.completed(&arrived.position, &mut track.stated_m2));
+    let position = settings.assumed.map_or(arrived.position, |assumed| assumed.completed(&arrived.position, &mut track.stated));
     let position = &believed(settings, track, &position);
     let (seen, mut reason) = sample(settings, track, position);
     let before = track.judge;

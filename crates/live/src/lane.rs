@@ -128,8 +128,18 @@ impl Lane {
         for each in decoded {
             match each {
                 Ok(position) => self.accept(position, arrival, out),
-                Err(reason) => self.counters.refuse(*reason),
+                Err(reason) => {
+                    self.counters.refuse(*reason);
+                    self.lose(*reason);
+                }
             }
+        }
+    }
+
+    /// What a receiver states of its accuracy beside no position is not passed over by what the user assumes.
+    fn lose(&mut self, reason: Refused) {
+        if let Some(track) = self.tracks.get_mut(&self.settings.track).filter(|_| reason == Refused::AccuracyAlone) {
+            track.stated.lost = true;
         }
     }
 

@@ -1,5 +1,6 @@
 //! State of one track.
 
+use crate::assumed::Stated;
 use crate::balance::Balance;
 use crate::codec::{Damaged, Reader, Writer};
 use crate::order::Waiting;
@@ -36,8 +37,8 @@ pub(crate) struct Track {
     pub(crate) waiting: Waiting,
     /// Whether a record of it stated an RNP.
     pub(crate) states_rnp: bool,
-    /// The largest horizontal variance that it stated last, where one is assumed \[m²\].
-    pub(crate) stated_m2: Option<f64>,
+    /// What it stated of its accuracy, where one is assumed.
+    pub(crate) stated: Stated,
     /// Whether its silence was noticed since the last record.
     pub(crate) silent: bool,
 }
@@ -56,7 +57,7 @@ impl Track {
             balance: Balance::default(),
             waiting: Waiting::default(),
             states_rnp: false,
-            stated_m2: None,
+            stated: Stated::default(),
             silent: false,
         }
     }
@@ -146,7 +147,8 @@ impl Track {
         self.balance.write(to);
         self.waiting.write(to);
         to.flag(self.states_rnp);
-        to.option(self.stated_m2, Writer::f64);
+        to.option(self.stated.largest_m2, Writer::f64);
+        to.flag(self.stated.lost);
         to.flag(self.silent);
     }
 
@@ -209,8 +211,10 @@ impl Track {
         };
         let neighbours = Neighbours { last: [from.option(place)?, from.option(place)?] };
         let (balance, waiting) = (Balance::read(from)?, Waiting::read(from)?);
-        let (states_rnp, stated_m2, silent) = (from.flag()?, from.option(Reader::f64)?, from.flag()?);
-        Ok(Self { judge, incarnation, open, last, stepped, along, motion, neighbours, balance, waiting, states_rnp, stated_m2, silent })
+        let states_rnp = from.flag()?;
+        let stated = Stated { largest_m2: from.option(Reader::f64)?, lost: from.flag()? };
+        let silent = from.flag()?;
+        Ok(Self { judge, incarnation, open, last, stepped, along, motion, neighbours, balance, waiting, states_rnp, stated, silent })
     }
 }
 

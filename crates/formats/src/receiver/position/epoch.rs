@@ -98,7 +98,7 @@ impl Epoch {
 
     /// What there is: the epoch is finished.
     pub(super) fn take(&mut self) -> Vec<Message> {
-        self.state.finished = self.state.key.take();
+        self.state.finished = self.state.key.take().or(self.state.finished);
         std::mem::take(&mut self.state.messages)
     }
 }

@@ -81,6 +81,9 @@ pub(super) fn step(body: &[u8], record: u64) -> Step {
         RMC | GLL => Step::Date { key, kind, dated: None, kept: true },
         ZDA => Step::Date { key, kind, dated: fields.long_date().and_then(|d| dated(d, key)), kept: false },
         GST if !fields.sizes(&[2, 3, 4, 6, 7, 8]) => Step::Malformed("a deviation of GST is no size"),
+        GST if fields.number(3).is_some() && [6, 7].into_iter().any(|k| fields.number(k).is_none()) => {
+            Step::Malformed("GST has an ellipse and no deviations along the axes")
+        }
         GBS if !fields.sizes(&[2, 3, 4]) => Step::Malformed("an expected error of GBS is no size"),
         GST | GBS => Step::PartOfTalkers { key, kind },
         GNS => Step::Date { key, kind, dated: None, kept: true },
