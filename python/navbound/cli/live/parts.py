@@ -36,7 +36,9 @@ def report_to(*, json: bool) -> Callable[[dict[str, Any]], None]:
             sys.stdout.write(transition.line(reported) + "\n")
             sys.stdout.flush()
         else:
-            out_console.print(transition.words(reported, utc_text(reported["event_ns"])), markup=False, highlight=False, soft_wrap=True)
+            out_console.print(
+                transition.words(reported, utc_text(transition.turned_ns(reported))), markup=False, highlight=False, soft_wrap=True
+            )
 
     return report
 

@@ -65,6 +65,12 @@ def line(transition: dict[str, Any]) -> str:
     return json.dumps(finite, separators=(",", ":"), allow_nan=False)
 
 
+def turned_ns(transition: Mapping[str, Any]) -> int:
+    """When it began or ended: a silence is noticed only when the next record comes, and is older than that. [ns]."""
+    began = transition["annunciation_ns"] if transition["transition"] == "raised" else transition["clear_ns"]
+    return int(transition["event_ns"] if began is None else began)
+
+
 def words(transition: dict[str, Any], utc: str) -> str:
     """One line for a person."""
     who = transition["track"] or "source"

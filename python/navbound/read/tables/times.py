@@ -149,7 +149,8 @@ def converted(frame: pl.DataFrame, columns: list[Column], unit: str) -> tuple[pl
         pl.when(empty).then(pl.lit("empty")).when(ns.is_null()).then(pl.lit("not a time"))
         .when(~inside).then(pl.lit("time outside 1980 to 2100"))
     ).to_series()  # fmt: skip
-    return ns, reason
+    # A time that none was written at is not known, so that no epochs are missing since.
+    return pl.select(pl.when(inside).then(ns)).to_series(), reason
 
 
 def _unix_ns(column: pl.Series, unit: str) -> pl.Series:

@@ -9,6 +9,7 @@ from navbound.methods import method
 from navbound.records.run import Belief, MethodResult, ProtectionSummary, Verdict, Worst
 from navbound.run.verdict import rule
 from navbound.run.verdict.belief import is_vertical, of_epochs
+from navbound.run.verdict.numbers import duration
 from navbound.run.verdict.results import protection_words, verdict_words
 
 if TYPE_CHECKING:
@@ -16,6 +17,10 @@ if TYPE_CHECKING:
     from navbound.run.inputs.doubts import Doubts
     from navbound.run.summary.sums import Sums
     from navbound.storage.tables import Table
+
+
+SPARSE_S = 60.0
+"""Period beyond which nothing is shown: within it an airliner flies 14 km, and an alert begins and ends. Provenance: ours. [s]"""
 
 
 @dataclass(frozen=True)
@@ -81,7 +86,7 @@ def verdict_of(
 ) -> Verdict:
     """The verdict and its words."""
     judge, belief = stated[0], known.belief
-    position_doubts = [*material.position_doubts, *_scattered(material, known, judge.id)]
+    position_doubts = [*material.position_doubts, *_scattered(material, known, judge.id), *_sparse(material.sample_period_s)]
     n_epochs, n_degraded = known.n_recorded + known.n_missing, known.n_status.get("degraded", 0)
     facts = rule.TrackFacts(
         n_epochs=n_epochs,
@@ -167,6 +172,13 @@ def _scattered(material: Material, known: VerdictFacts, judging: str) -> list[st
         f"their own speeds say): positions are older or younger than their rows, which the covariance does not hold, and the bound leaves "
         f"{worst.margin_m:.0f} m of the limit"
     ]
+
+
+def _sparse(period_s: float) -> list[str]:
+    """A doubt where each position is alone: the monitor has nothing nearly all the time."""
+    if round(period_s, 3) <= SPARSE_S:
+        return []
+    return [f"Positions stand {duration(period_s)} apart as a rule: what is said of them is true of each by itself, and of no flight"]
 
 
 def _assumed(material: Material, judging: str) -> list[Literal["sigma_typed", "sigma_coded", "no_path"]]:
