@@ -2,9 +2,10 @@
 
     .venv/bin/python bench/live_fleet.py files --aircraft 5000 --seconds 60
     .venv/bin/python bench/live_fleet.py nats --kill worker        # or: --kill broker; both 30 s after the begin
+    .venv/bin/python bench/live_fleet.py nats --kill crew --seconds 150    # two workers: one is killed, the other frozen for a minute
     .venv/bin/python bench/live_fleet.py kafka                     # needs what ./dev test kafka brings
 
-Acceptance lines A17 to A20 of the live specification. The fleet and its truth are shared data, beside the repository.
+Acceptance lines A17 to A21 of the live specification. The fleet and its truth are shared data, beside the repository.
 """
 
 from __future__ import annotations
@@ -34,6 +35,7 @@ from navbound.live.session import now_ns  # noqa: E402
 
 COMMAND = [sys.executable, "-c", "from navbound.cli.start import process; process()", "live"]
 TICK_S = 0.01
+BETWEEN_S, FROZEN_S = 15.0, 60.0
 BROKERS: dict[str, type[Server]] = {"nats": Server, "kafka": KafkaServer}
 
 
@@ -109,7 +111,7 @@ def main() -> None:
     ask.add_argument("--aircraft", type=int, default=5000)
     ask.add_argument("--seconds", type=int, default=60)
     ask.add_argument("--seed", type=int, default=1)
-    ask.add_argument("--kill", choices=["worker", "broker"])
+    ask.add_argument("--kill", choices=["worker", "broker", "crew"])
     ask.add_argument("--kill-s", type=float, default=30.0)
     how = ask.parse_args()
     with tempfile.TemporaryDirectory() as folder:
@@ -122,7 +124,7 @@ def run(how: argparse.Namespace, folder: Path) -> None:
     place = str(folder / "fleet") if server is None else server.name("bench")
     feeder = Process("feed", "-", "--to", place, "--spool", str(folder / "spool"), stdin=subprocess.PIPE)
     require_begun(place)
-    workers = [Process("work", place, "--json", stdout=subprocess.PIPE)]
+    workers = [Process("work", place, "--json", stdout=subprocess.PIPE) for _ in range(2 if how.kill == "crew" else 1)]
     time.sleep(8.0)
     killed_ns, again_ns = 0, 0
 
@@ -130,10 +132,12 @@ def run(how: argparse.Namespace, folder: Path) -> None:
         nonlocal killed_ns, again_ns
         time.sleep(how.kill_s)
         killed_ns = now_ns()
-        if how.kill == "worker":
+        if how.kill in {"worker", "crew"}:
             workers[0].end(signal.SIGKILL)
             again_ns = now_ns()
             workers.append(Process("work", place, "--json", stdout=subprocess.PIPE))
+            if how.kill == "crew":
+                freeze(workers[1].process)
         elif server is not None:
             server.kill()
             time.sleep(3.0)
@@ -171,6 +175,20 @@ def run(how: argparse.Namespace, folder: Path) -> None:
     print("feeder:", " ".join(feeder.report)[-400:])
     if server is not None:
         server.kill()
+
+
+def freeze(process: subprocess.Popen[bytes]) -> None:
+    """Stop a worker for a minute and let it go on: it must then end by itself."""
+    time.sleep(BETWEEN_S)
+    process.send_signal(signal.SIGSTOP)
+    time.sleep(FROZEN_S)
+    process.send_signal(signal.SIGCONT)
+    begun = time.monotonic()
+    try:
+        code = process.wait(FROZEN_S)
+        print(f"the frozen worker ended {time.monotonic() - begun:.1f} s after it was let go, with {code}", flush=True)
+    except subprocess.TimeoutExpired:
+        print(f"the frozen worker still works {FROZEN_S:g} s after it was let go", flush=True)
 
 
 def broker_use(server: Any) -> tuple[float, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -269,6 +270,32 @@ def test_a_worker_that_did_not_answer_is_shut_out(broker: str, monkeypatch: pyte
         later = other.went_out(0)
         later.append(C, len(A))
         assert everything(other.went_out(0)) == A + C
+
+
+HOLDS = """
+import sys, time
+from navbound.live.fleet import connect
+with connect(sys.argv[1]) as transport:
+    transport.renew()
+    print(transport.claim(0), flush=True)
+    time.sleep(600)
+"""
+
+
+def test_a_worker_of_this_host_that_was_killed_is_followed_at_once(broker: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shared, "LEASE_S", 1e9)
+    with made(broker) as other:
+        process = subprocess.Popen([sys.executable, "-c", HOLDS, broker], stdout=subprocess.PIPE)
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"True\n"
+        assert not other.claim(0)
+        assert other.n_workers() == 1
+        process.kill()
+        # Its parent does not know how it ended: it still has its number.
+        while not other.claim(0):
+            other.wait()
+        assert other.n_workers() == 0
+        process.communicate()
 
 
 def test_who_claimed_a_lane_and_slept_before_it_wrote_is_shut_out(broker: str, monkeypatch: pytest.MonkeyPatch) -> None:

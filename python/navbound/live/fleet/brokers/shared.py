@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Self
 from urllib.parse import urlsplit
 
 from navbound.errors import FormatError, InputError
+from navbound.live.fleet.brokers import processes
 from navbound.live.fleet.brokers.numbered import MOST_PAYLOAD
 from navbound.live.fleet.transport import WAIT_S, UnreachableError
 
@@ -53,6 +54,7 @@ class Broker(ABC):
         self.record: dict[str, Any] = {}
         self.n_lanes = 0
         self._me = uuid.uuid4().hex
+        self._mark = f"{self._me} {processes.mark()}".encode()
         self._leases: dict[int, int] = {}
         self._fences: dict[int, tuple[int, int]] = {}
         self._seen: dict[str, tuple[int, float]] = {}
@@ -152,13 +154,17 @@ class Broker(ABC):
             return 0.0
         return time.monotonic() - before[1]
 
+    def _lives(self, key: str, content: bytes, number: int) -> bool:
+        """Whether the worker that keeps something under a key may still live: it said so lately, and is not known to have ended."""
+        return not processes.is_gone(content.decode(errors="replace").partition(" ")[2]) and self._unchanged_s(key, number) < LEASE_S
+
     def claim(self, lane: int) -> bool:
-        """Take the lease of a lane that is free or was not renewed, and shut who had it out of the log."""
+        """Take the lease of a lane that is free, or whose worker is gone, and shut who had it out of the log."""
         try:
             current, number = self._newest("lease", lane) or (b"", 0)
-            if current and self._unchanged_s(f"lease.{lane}", number) < LEASE_S:
+            if current and self._lives(f"lease.{lane}", current, number):
                 return False
-            taken = self._put(("lease", lane), self._me.encode(), last=number)
+            taken = self._put(("lease", lane), self._mark, last=number)
             if taken is None:
                 return False
             self._fences[lane] = self._log("out", lane).fence()
@@ -172,16 +178,16 @@ class Broker(ABC):
         """Renew leases; those that another has taken."""
         lost = []
         with contextlib.suppress(UnreachableError):
-            self._put(("worker", self._me), b"1")
+            self._put(("worker", self._me), self._mark)
             self._counted = True
             for lane, number in list(self._leases.items()):
-                renewed = self._put(("lease", lane), self._me.encode(), last=number)
+                renewed = self._put(("lease", lane), self._mark, last=number)
                 if renewed is not None:
                     self._leases[lane] = renewed
                     continue
                 # It may be this worker's own renewal whose answer was lost.
                 current = self._newest("lease", lane)
-                if current is not None and current[0] == self._me.encode():
+                if current is not None and current[0] == self._mark:
                     self._leases[lane] = current[1]
                 else:
                     lost.append(lane)
@@ -200,7 +206,7 @@ class Broker(ABC):
         n = 0
         for member in self._members():
             entry = self._newest("worker", member)
-            alive = entry is not None and (member == self._me or self._unchanged_s(f"worker.{member}", entry[1]) < LEASE_S)
+            alive = entry is not None and (member == self._me or self._lives(f"worker.{member}", *entry))
             n += alive
             if not alive:
                 self._remove("worker", member)
