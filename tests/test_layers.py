@@ -7,7 +7,7 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1] / "python" / "navbound"
 LAYERS = (
-    ("delays", "errors", "exit_status", "units", "_core"),
+    ("delays", "errors", "exit_status", "units", "words", "_core"),
     ("risks", "serve", "status", "storage", "table", "time"),
     ("records", "methods", "algorithms", "scenario"),
     (

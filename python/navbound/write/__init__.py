@@ -13,6 +13,7 @@ from navbound import _core
 from navbound.errors import ConflictError, InputError
 from navbound.table.arguments import checked, whole
 from navbound.table.columns import COVARIANCE
+from navbound.words.plurals import counted
 from navbound.write.geographic import Shape, geojson, kml, shapes
 from navbound.write.measurements import WrittenLog, navigation, observations, ubx
 from navbound.write.sbas import Sent, ems
@@ -22,7 +23,14 @@ if TYPE_CHECKING:
 
 __all__ = ["Sent", "Shape", "Written", "WrittenLog", "ems", "geojson", "kml", "navigation", "observations", "rtklib", "shapes", "ubx"]
 
-_POSITION = ("time_ns", "est_lat_rad", "est_lon_rad", "est_h_m")
+_PARTS = {
+    "a time": ("time_ns",),
+    "a position": ("est_lat_rad", "est_lon_rad"),
+    "a height": ("est_h_m",),
+    "a horizontal covariance": tuple(name for name in COVARIANCE if "u" not in name),
+    "a vertical covariance": tuple(name for name in COVARIANCE if "u" in name),
+}
+"""What an epoch of a solution file has, and the columns that hold it."""
 
 
 @dataclass(frozen=True)
@@ -69,9 +77,6 @@ def rtklib(epochs: pl.DataFrame, path: str | Path, *, track: str | None = None, 
     InputError
         Columns that are missing, several tracks, a quality that is none, a number outside its domain, or not one epoch to write.
     """
-    missing = [c for c in (*_POSITION, *COVARIANCE) if c not in epochs.columns]
-    if missing:
-        raise InputError("epochs", f"a table without {', '.join(missing)}", domain="a table with time, position and covariance")
     quality = whole("quality", quality, 1, 7)
     tracks = epochs["track"].unique(maintain_order=True).to_list() if "track" in epochs.columns else []
     if track is not None:
@@ -81,10 +86,10 @@ def rtklib(epochs: pl.DataFrame, path: str | Path, *, track: str | None = None, 
     elif len(tracks) > 1:
         because = f"a solution file holds one track, and there are {', '.join(map(str, tracks[:8]))}"
         raise ConflictError("epochs", needs=("track",), because=because)
-    there = pl.all_horizontal(pl.col(c).is_not_null() & pl.col(c).is_finite() for c in (*_POSITION, *COVARIANCE))
-    kept = epochs.filter(there)
+    there = {part: _there(epochs, names) for part, names in _PARTS.items()}
+    kept = epochs.filter(pl.all_horizontal(there.values()))
     if kept.is_empty():
-        raise InputError("epochs", f"{epochs.height} epochs", domain="a table with a position and a covariance in one epoch at least")
+        raise InputError("epochs", _lacking(epochs, there), domain=_COMPLETE)
     count = kept["n_sv"].fill_null(0).cast(pl.UInt32) if "n_sv" in kept.columns else pl.zeros(kept.height, pl.UInt32, eager=True)
     text = _core.write_rtklib(
         f"navbound {_core.__version__}",
@@ -99,6 +104,23 @@ def rtklib(epochs: pl.DataFrame, path: str | Path, *, track: str | None = None, 
     place = Path(path)
     place.write_text(text, encoding="ascii")
     return Written(place, kept.height, epochs.height - kept.height)
+
+
+_COMPLETE = f"{', '.join(list(_PARTS)[:-1])} and {list(_PARTS)[-1]} together in one epoch at least; .geojson and .kml need no covariance"
+
+
+def _there(epochs: pl.DataFrame, names: tuple[str, ...]) -> pl.Expr:
+    """Whether an epoch has a finite number in each of these columns."""
+    if not set(names) <= set(epochs.columns):
+        return pl.lit(value=False)
+    return pl.all_horizontal(pl.col(name).is_not_null() & pl.col(name).is_finite() for name in names)
+
+
+def _lacking(epochs: pl.DataFrame, there: dict[str, pl.Expr]) -> str:
+    """A table of which no epoch is complete, by what its epochs lack."""
+    n_without = {part: epochs.height - epochs.filter(has).height for part, has in there.items()}
+    lacks = [f"{n} without {part} ({', '.join(_PARTS[part])})" for part, n in n_without.items() if n]
+    return ", ".join([f"a table of {counted(epochs.height, 'epoch')}", *lacks])
 
 
 def _floats(frame: pl.DataFrame, column: str) -> NDArray[np.float64]:

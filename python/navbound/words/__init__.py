@@ -1,0 +1,1 @@
+"""How numbers become sentences, wherever one is printed."""
