@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import datetime as dt
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import polars as pl
 import pytest
 
+import navbound
 from navbound import InputError, write
+from navbound.read.checks.statements import other_place
 from test_write import table as solution
+
+if TYPE_CHECKING:
+    from navbound.run.directory import Run
 
 
 def test_a_solution_file_without_a_vertical_covariance_is_refused_by_what_it_lacks(tmp_path: Path) -> None:
@@ -21,3 +28,28 @@ def test_a_solution_file_without_a_vertical_covariance_is_refused_by_what_it_lac
         InputError, match=r"a table of 1 epoch, 1 without a height \(est_h_m\) is .* \.geojson and \.kml need no covariance"
     ):
         write.rtklib(solution(1).drop("est_h_m"), tmp_path / "a.pos")
+
+
+def _way(n: int = 60, **columns: object) -> pl.DataFrame:
+    """Positions of n seconds on end, some 60 m apart, and further columns."""
+    at = pl.int_range(n, eager=True)
+    start = dt.datetime(2024, 5, 13, 12, 30)
+    times = [f"{start + dt.timedelta(seconds=k):%Y-%m-%dT%H:%M:%SZ}" for k in range(n)]
+    plain: dict[str, object] = {"time": times, "lat": 48.0 + at * 5e-4, "lon": 11.0 + at * 3e-4}
+    return pl.DataFrame({name: values for name, values in (plain | columns).items() if values is not None})
+
+
+def _analyzed(tmp_path: Path, table: pl.DataFrame, name: str = "a.csv", **settings: object) -> Run:
+    table.write_csv(tmp_path / name)
+    return navbound.analyze(tmp_path / name, **{"sigma_m": 5.0, "out": tmp_path / "run"} | settings)
+
+
+def test_resets_of_a_position_are_no_other_place(tmp_path: Path) -> None:
+    # `vehicle_global_position` of PX4 counts the resets of its position, and has the step of the last one in degrees.
+    later = [0] * 30 + [3] * 30
+    resets = {"lat_lon_reset_counter": later, "delta_lat_lon[0]": [k * 1e-2 for k in later], "delta_lat_lon[1]": [k * -2e-2 for k in later]}
+    run = _analyzed(tmp_path, _way(**resets, lat_dot=[k * 1e-2 for k in later]))
+    assert run.summary.verdict.id == "inside"
+    assert "another position" not in run.summary.verdict.words
+    assert not any(other_place(name) for name in (*resets, "lat_rate", "lon_variance"))
+    assert other_place("lat2") is not None

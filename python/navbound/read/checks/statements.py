@@ -433,7 +433,8 @@ _LATITUDE = _LATITUDES | _LONGITUDES
 _NO_VEHICLE = _NO_TRUTH | _words(
     "airport origin destination dest departure dep arrival arr home target goal next prev previous start end first last site sensor radar "
     "beacon antenna cpr centre center cell grid tile offset scale speed vel velocity rate err error sigma std var acc accuracy axis "
-    "pred predicted forecast intruder traffic lead leader min max mean avg average median"
+    "pred predicted forecast intruder traffic lead leader min max mean avg average median "
+    "reset resets counter count delta dot variance"
 )
 """Parts of names of a latitude or a longitude, and of one that is none of the vehicle now. Provenance: ours."""
 _INERTIAL = _words("irs ins iru ir adiru adirs inertial dr dead reckoning deadreckoning")
