@@ -10,7 +10,7 @@ import polars as pl
 import pytest
 
 import navbound
-from navbound import InputError, write
+from navbound import FormatError, InputError, write
 from navbound.read.checks.statements import other_place
 from test_write import table as solution
 
@@ -53,3 +53,17 @@ def test_resets_of_a_position_are_no_other_place(tmp_path: Path) -> None:
     assert "another position" not in run.summary.verdict.words
     assert not any(other_place(name) for name in (*resets, "lat_rate", "lon_variance"))
     assert other_place("lat2") is not None
+
+
+@pytest.mark.parametrize("name", ["Altitude (Ellipsoid)", "Alt (HAE)", "height-above-ellipsoid", "altitude_ellipsoid", "alt_ellipsoid_m"])
+def test_a_height_above_the_ellipsoid_beside_an_altitude_is_the_height(tmp_path: Path, name: str) -> None:
+    run = _analyzed(tmp_path, _way(**{"Altitude (ft)": [1000.0] * 60, name: [351.5] * 60}))
+    assert run.epochs["est_h_m"].to_list() == [351.5] * 60
+    assert run.epochs["altitude_m"].to_list() == pytest.approx([304.8] * 60)
+
+
+def test_of_two_heights_of_one_kind_nothing_is_guessed(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match=r"“Altitude” and “altitude \(m\)” are one name in another writing"):
+        _analyzed(tmp_path, _way(**{"Altitude": [1000.0] * 60, "altitude (m)": [304.8] * 60}))
+    # An autopilot writes it in metres in one table and in millimetres in another.
+    assert "est_h_m" not in _analyzed(tmp_path, _way(alt_ellipsoid=[351_500] * 60)).epochs.columns

@@ -116,8 +116,12 @@ QUANTITIES: tuple[Quantity, ...] = (
         "est_h_m",
         -2e4,
         1e8,
-        m="h_m height height_m ellipsoid_height ellipsoidal_height",
+        # What it is above goes before a height of which nothing states it.
+        m="h_m ellipsoid_height ellipsoidal_height height_above_ellipsoid ellipsoid_altitude ellipsoidal_altitude altitude_ellipsoid "
+        "altitude_ellipsoidal altitude_hae height height_m",
         ft="geoaltitude geoaltitude_ft alt_geom height_ft",
+        # Autopilots write it in metres and in millimetres.
+        written="alt_ellipsoid alt_hae",
     ),
     _q("altitude_m", -2e3, 1e5, m="alt_m", ft="altitude altitude_ft alt_baro pressure_altitude"),
     _q(

@@ -326,7 +326,15 @@ def _plain(name: str) -> tuple[str, str | None]:
             stem, unit = inside[: min(opened)], inside[min(opened) + 1 :].strip().lower()
     elif (slash := stem.rfind("/")) > 0 and stem[slash + 1 :].strip().lower() in _ALL_UNITS:
         stem, unit = stem[:slash], stem[slash + 1 :].strip().lower()
-    return re.sub(r"[\s\-.]+", "_", stem.strip().lower()), unit
+    plain = re.sub(r"[\s\-.]+", "_", stem.strip().lower())
+    if unit in _ABOVE_ELLIPSOID and plain in _HEIGHTS:
+        # What it is above is part of its name: `Altitude` beside it is another height.
+        return "ellipsoid_height", None
+    return plain, unit
+
+
+_ABOVE_ELLIPSOID = frozenset(("wgs84", "wgs-84", "wgs 84", "ellipsoid", "ellipsoidal", "above ellipsoid", "hae"))
+_HEIGHTS = frozenset(("altitude", "alt", "height", "h"))
 
 
 def _parted(name: str) -> str:
@@ -360,26 +368,7 @@ def _known(quantity: Quantity, names: list[str], path: Path, *, own: bool) -> Co
     return None
 
 
-NO_UNIT = frozenset(
-    (
-        "",
-        "1",
-        "-",
-        "wgs84",
-        "wgs-84",
-        "wgs 84",
-        "ellipsoid",
-        "ellipsoidal",
-        "above ellipsoid",
-        "hae",
-        "geodetic",
-        "true",
-        "gps",
-        "utc",
-        "1s",
-        "1 sigma",
-    )
-)
+NO_UNIT = _ABOVE_ELLIPSOID | {"", "1", "-", "geodetic", "true", "gps", "utc", "1s", "1 sigma"}
 """What stands in brackets behind a name and says nothing of its unit."""
 
 
