@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import datetime as dt
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import polars as pl
 import pytest
 
 import navbound
 from navbound import FormatError, InputError, write
+from navbound.read import read
 from navbound.read.checks.statements import other_place
+from navbound.read.pieces.reading import read_pieces
 from test_write import table as solution
 
 if TYPE_CHECKING:
@@ -30,18 +32,19 @@ def test_a_solution_file_without_a_vertical_covariance_is_refused_by_what_it_lac
         write.rtklib(solution(1).drop("est_h_m"), tmp_path / "a.pos")
 
 
-def _way(n: int = 60, **columns: object) -> pl.DataFrame:
+def _way(n: int = 60, /, **columns: Any) -> pl.DataFrame:
     """Positions of n seconds on end, some 60 m apart, and further columns."""
     at = pl.int_range(n, eager=True)
     start = dt.datetime(2024, 5, 13, 12, 30)
     times = [f"{start + dt.timedelta(seconds=k):%Y-%m-%dT%H:%M:%SZ}" for k in range(n)]
-    plain: dict[str, object] = {"time": times, "lat": 48.0 + at * 5e-4, "lon": 11.0 + at * 3e-4}
+    plain: dict[str, Any] = {"time": times, "lat": 48.0 + at * 5e-4, "lon": 11.0 + at * 3e-4}
     return pl.DataFrame({name: values for name, values in (plain | columns).items() if values is not None})
 
 
-def _analyzed(tmp_path: Path, table: pl.DataFrame, name: str = "a.csv", **settings: object) -> Run:
+def _analyzed(tmp_path: Path, table: pl.DataFrame, name: str = "a.csv", **settings: Any) -> Run:
     table.write_csv(tmp_path / name)
-    return navbound.analyze(tmp_path / name, **{"sigma_m": 5.0, "out": tmp_path / "run"} | settings)
+    stated: dict[str, Any] = {"sigma_m": 5.0, "out": tmp_path / "run"}
+    return navbound.analyze(tmp_path / name, **stated | settings)
 
 
 def test_resets_of_a_position_are_no_other_place(tmp_path: Path) -> None:
@@ -67,3 +70,95 @@ def test_of_two_heights_of_one_kind_nothing_is_guessed(tmp_path: Path) -> None:
         _analyzed(tmp_path, _way(**{"Altitude": [1000.0] * 60, "altitude (m)": [304.8] * 60}))
     # An autopilot writes it in metres in one table and in millimetres in another.
     assert "est_h_m" not in _analyzed(tmp_path, _way(alt_ellipsoid=[351_500] * 60)).epochs.columns
+
+
+def _clock(n: int = 60, pattern: str = "%H:%M:%S.5") -> list[str]:
+    return [f"{dt.datetime(2024, 5, 13, 12, 30) + dt.timedelta(seconds=k):{pattern}}" for k in range(n)]
+
+
+FIRST = dt.datetime(2024, 5, 13, 12, 30, 0, 500_000)
+
+
+@pytest.mark.parametrize(
+    ("date", "text", "time"),
+    [
+        ("Date", "2024-05-13", "Time"),
+        ("UTC Date", "2024/5/13", "UTC Time"),
+        ("date", "20240513", "utc"),
+        ("date", "13-May-2024", "time"),
+        ("UTC_date", "13.05.2024", "UTC_time"),
+        ("date", "05/13/2024", "time_utc"),
+        ("date", "2024-05-13 00:00:00", "time"),
+    ],
+)
+@pytest.mark.parametrize("piece_rows", [None, 20])
+def test_a_date_and_a_time_of_day_are_one_time(tmp_path: Path, date: str, text: str, time: str, piece_rows: int | None) -> None:
+    _way(**{"time": None, date: [text] * 60, time: _clock()}).write_csv(tmp_path / "a.csv")
+    if piece_rows is None:
+        epochs, notes = (reading := read(tmp_path / "a.csv")).epochs, reading.notes
+    else:
+        in_pieces = read_pieces(tmp_path / "a.csv", piece_rows=piece_rows)
+        epochs, notes = pl.concat(in_pieces.epochs()), in_pieces.notes
+    assert epochs["time_ns"][0] == gps_ns(FIRST)
+    assert epochs["time_ns"][-1] == gps_ns(FIRST + dt.timedelta(seconds=59))
+    assert any("have no time zone and were read as UTC" in note for note in notes) == ("utc" not in (date + time).lower())
+
+
+def gps_ns(utc: dt.datetime) -> int:
+    """18 leap seconds since 2017."""
+    since = utc - dt.datetime(1980, 1, 6)
+    return (since // dt.timedelta(microseconds=1)) * 1000 + 18 * 10**9
+
+
+def _dates(tmp_path: Path, dates: list[str], **settings: Any) -> pl.DataFrame:
+    n = len(dates)
+    _way(n, time=None, Date=dates, Time=_clock(n)).write_csv(tmp_path / "a.csv")
+    return read(tmp_path / "a.csv", **settings).epochs
+
+
+def test_the_order_of_day_and_month_is_decided_by_rows_or_by_the_caller_and_never_guessed(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match=r'“03/04/2024” is one day .* --map "utc_date=Date:dmy" or --map "utc_date=Date:mdy"'):
+        _dates(tmp_path, ["03/04/2024"] * 20)
+    for order, month, day in (("dmy", 4, 3), ("mdy", 3, 4)):
+        epochs = _dates(tmp_path, ["03/04/2024"] * 20, columns={"utc_date": f"Date:{order}"})
+        assert epochs["time_ns"][0] == gps_ns(FIRST.replace(month=month, day=day))
+    # A later row decides, and the note says which.
+    dates = ["12/05/2024"] * 10 + ["13/05/2024"] * 10
+    assert _dates(tmp_path, dates)["time_ns"][0] == gps_ns(FIRST.replace(day=12))
+    assert any("“Date” has the day first in all rows, as “13/05/2024” shows" in note for note in read(tmp_path / "a.csv").notes)
+    # Both orders give this day.
+    assert _dates(tmp_path, ["05/05/2024"] * 20)["time_ns"][0] == gps_ns(FIRST.replace(day=5))
+    with pytest.raises(FormatError, match="“13/05/2024” has the day first, and “05/13/2024” the month"):
+        _dates(tmp_path, ["13/05/2024"] * 10 + ["05/13/2024"] * 10)
+    with pytest.raises(FormatError, match=r"Date and Time: not a time: found “13/05/24 12:30:00\.5”"):
+        _dates(tmp_path, ["13/05/24"] * 20)
+    with pytest.raises(FormatError, match="Date and Time: not a time"):
+        _dates(tmp_path, ["03/04/2024"] * 20, columns={"utc_date": "Date:ymd"})
+    with pytest.raises(InputError, match="orders of a date: ymd, dmy, mdy"):
+        _dates(tmp_path, ["03/04/2024"] * 20, columns={"utc_date": "Date:dym"})
+
+
+@pytest.mark.parametrize(("pattern", "last"), [("%I:%M:%S %p", 59), ("%H:%M:%SZ", 59), ("%H:%M:%S,0", 59)])
+def test_a_time_of_day_may_be_of_half_a_day(tmp_path: Path, pattern: str, last: int) -> None:
+    _way(time=None, date=["2024-05-13"] * 60, utc=_clock(pattern=pattern)).write_csv(tmp_path / "a.csv")
+    assert read(tmp_path / "a.csv").epochs["time_ns"][-1] == gps_ns(FIRST.replace(microsecond=0) + dt.timedelta(seconds=last))
+
+
+def test_a_whole_time_goes_before_a_time_of_day(tmp_path: Path) -> None:
+    # The tables of Ornitela's loggers.
+    apart = {"UTC_datetime": _clock(pattern="%Y-%m-%d %H:%M:%S"), "UTC_date": ["2024-05-13"] * 60, "UTC_time": _clock(pattern="%H:%M:%S")}
+    run = _analyzed(tmp_path, _way(time=None, **apart))
+    assert run.summary.verdict.id == "inside"
+    assert run.epochs["time_ns"][0] == gps_ns(FIRST.replace(microsecond=0))
+
+
+def test_a_time_of_day_without_a_date_says_what_is_missing(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match=r'“time” holds times of day and no date, .*--map "utc_date=COLUMN" --map "utc_time_of_day=time"'):
+        _analyzed(tmp_path, _way(time=_clock()))
+    day = _way(time=None, jour=["2024-05-13"] * 60, heure=_clock())
+    declared = {"utc_date": "jour", "utc_time_of_day": "heure"}
+    assert _analyzed(tmp_path, day, columns=declared).epochs["time_ns"][0] == gps_ns(FIRST)
+    with pytest.raises(FormatError, match="“jour” is a date, and no column is a time of day"):
+        _analyzed(tmp_path, day, columns={"utc_date": "jour"})
+    with pytest.raises(FormatError, match="Times of day are read as 12:30:01, with a column of their dates"):
+        _analyzed(tmp_path, _way(time=[123_000 + k for k in range(60)], date=[130_524] * 60))

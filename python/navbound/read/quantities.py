@@ -214,7 +214,8 @@ TRANSPONDER = frozenset({"squawk", "spi"})
 TIME_NAMES: dict[str, str] = {
     "time_ns": "gps_ns", "gps_time_ns": "gps_ns", "gps_time_s": "gps_s", "gps_s": "gps_s",
     "gps_week": "gps_week", "week": "gps_week", "gps_tow": "gps_tow_s", "gps_tow_s": "gps_tow_s", "tow_s": "gps_tow_s", "tow": "gps_tow_s",
-    "timestamp": "utc", "time": "utc", "utc": "utc", "datetime": "utc", "time_utc": "utc", "utc_time": "utc",
+    "timestamp": "utc", "time": "utc", "utc": "utc", "datetime": "utc", "utc_datetime": "utc", "datetime_utc": "utc", "time_utc": "utc",
+    "utc_time": "utc", "time_of_day": "utc", "gmt_time": "utc",
     "now": "utc_s", "unix_time": "utc_s", "unix_time_s": "utc_s", "time_s": "utc_s", "timestamp_ms": "utc_ms",
     "unixtimemillis": "utc_ms", "unix_time_millis": "utc_ms", "utctimemillis": "utc_ms", "time_ms": "utc_ms",
     "time_utc_usec": "utc_us", "utc_us": "utc_us", "timestamp_us": "utc_us", "time_us": "utc_us", "timeus": "utc_us",
@@ -222,7 +223,14 @@ TIME_NAMES: dict[str, str] = {
 """Known names of time columns to the way they are written."""
 
 WEEK = {"gps_week": "a GPS week", "gps_tow_s": "a time of week"}
-"""The two columns that make a time together; each is declared by its own key."""
+DAY = {"utc_date": "a date", "utc_time_of_day": "a time of day"}
+"""Two columns that make a time together, either way; each is declared by its own key."""
+
+DATE_NAMES = ("utc_date", "date_utc", "date", "gmt_date", "date_gmt")
+"""Known names of a date whose time of day stands in another column."""
+
+DATE_ORDERS = ("ymd", "dmy", "mdy")
+"""Orders of year, month and day in a date of numbers."""
 
 POSITION_TIME = "position_time_ns"
 """When a position was valid, GPS time [ns]; the row's own time is that of the report."""

@@ -16,9 +16,10 @@ from navbound.read.pieces.order import Pieces
 from navbound.read.pieces.parquet import batches, is_parquet
 from navbound.read.source import Source, digested
 from navbound.read.tables.columns import POSITION, assign, truth_as_position
+from navbound.read.tables.dates import of_day
 from navbound.read.tables.stated_units import HEAD_BYTES, require_same_in_remarks
 from navbound.read.tables.table import LINE, Layout, layout_of, rows_of
-from navbound.read.tables.values import Late, Values, one_row_a_time, texts
+from navbound.read.tables.values import SHOWN, Late, Values, one_row_a_time, texts
 from navbound.storage.frames import Spool
 
 if TYPE_CHECKING:
@@ -177,7 +178,9 @@ class _FirstPass:
         if self.beside is not None:
             # A file of the truth may call its positions so.
             columns, where_present = truth_as_position(names) | dict(columns or {}), dict(self.beside.columns)
-        self.mapping: Assignment = assign(names, columns, self.path, texts=texts(frame), where_present=where_present)
+        self.mapping: Assignment = assign(
+            names, columns, self.path, texts=texts(frame), of_day=of_day(frame.head(SHOWN)), where_present=where_present
+        )
         self.values = Values(self.path, self.source.stem, self.mapping, list(POSITION))
 
     def keep(self, frame: pl.DataFrame) -> None:

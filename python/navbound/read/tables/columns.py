@@ -22,6 +22,9 @@ from navbound.read.checks.statements import (
 )
 from navbound.read.own_positions import HEARD, READSB
 from navbound.read.quantities import (
+    DATE_NAMES,
+    DATE_ORDERS,
+    DAY,
     DUMP1090,
     DUMP1090_SPEED,
     FLIGHTRADAR24,
@@ -63,6 +66,8 @@ class Column:
     unit: str
     unit_stated: bool = False
     """Whether the file or the caller says the unit; otherwise it is the usual one of the name."""
+    order: str = ""
+    """Of a date of numbers, as the caller states it."""
 
 
 @dataclass(frozen=True)
@@ -153,6 +158,7 @@ def assign(
     *,
     needs: Sequence[str] = POSITION,
     texts: Container[str] = (),
+    of_day: Container[str] = (),
     where_present: Mapping[str, str] | None = None,
 ) -> Assignment:
     """Find what each column is.
@@ -170,6 +176,8 @@ def assign(
         Quantities without which the file is refused, beside a time; other than a position they are those of errors and protection levels.
     texts : container of str
         Columns that hold words and no number: one named `track` is then a flight's name, not its direction.
+    of_day : container of str
+        Columns that hold times of day without a date: they are times together with a column of dates alone.
     where_present : mapping, optional
         More of `declared`, each of which counts where the file has its column.
 
@@ -185,7 +193,7 @@ def assign(
     own = {"time_ns", "est_lat_rad"} <= set(names) or any(_plain(name)[0] == "track" and name in texts for name in names)
     columns: dict[str, Column] = {}
     times: list[Column] = []
-    known = {"time", "time_ns", *WEEK, *(q.name for q in quantities)}
+    known = {"time", "time_ns", *WEEK, *DAY, *(q.name for q in quantities)}
     beside = {key: value for key, value in (where_present or {}).items() if key in known and _column_named(value, names)[0] in names}
     stated = beside | dict(declared or {})
     absent = frozenset(
@@ -210,9 +218,11 @@ def assign(
                 columns[quantity.name] = assigned
                 taken.add(assigned.name)
     if not times:
-        times = _times([n for n in names if n not in taken])
+        times = _times([n for n in names if n not in taken], of_day)
         taken |= {c.name for c in times}
     times = _whole_week(times, [n for n in names if n not in taken], path)
+    taken |= {c.name for c in times}
+    times = _whole_day(times, [n for n in names if n not in taken], of_day, path)
     taken |= {c.name for c in times}
     _require(columns, times, names, path, needs)
     _refuse_twins(columns, set(declared or {}), names, path)
@@ -225,7 +235,9 @@ def assign(
     kinds |= {columns[name].name: kind_of(name) for name in ("mode", "nuc_p") if name in columns}
     statements = [(name, kind) for name, kind in kinds.items() if kind is not None]
     stating = {name for name, _ in statements}
-    again = _again(columns, times, {*(declared or {}), *beside}, [n for n in free if kinds.get(n) in (None, NUC)], path)
+    # A time of day without its date is compared with nothing.
+    rest = [n for n in free if kinds.get(n) in (None, NUC) and n not in of_day]
+    again = _again(columns, times, {*(declared or {}), *beside}, rest, path)
     unused = [n for n in free if n not in stating]
     compared = {column.name for column in again}
     places = find([n for n in unused if n not in compared], {*(declared or {}), *beside}) if tuple(needs) == POSITION else []
@@ -390,7 +402,12 @@ def _written_unit(name: str, quantity: Quantity, path: Path) -> str | None:
     raise FormatError(path, what, 1, name)
 
 
-def _times(names: list[str]) -> list[Column]:
+def _times(names: list[str], of_day: Container[str] = ()) -> list[Column]:
+    """A column of a known name; one with dates goes before one of times of day, which needs another one for them."""
+    return _dated_times([n for n in names if n not in of_day]) or _dated_times([n for n in names if n in of_day])
+
+
+def _dated_times(names: list[str]) -> list[Column]:
     plain = _by_form(names)
     columns = [Column("time", plain[alias], unit) for alias, unit in TIME_NAMES.items() if alias in plain]
     week = [c for c in columns if c.unit == "gps_week"][:1]
@@ -432,6 +449,37 @@ def _whole_week(times: list[Column], names: list[str], path: Path) -> list[Colum
     return times
 
 
+def _whole_day(times: list[Column], names: list[str], of_day: Container[str], path: Path) -> list[Column]:
+    """A date and its time of day, in this order, where a time is one of day alone or either of both was declared.
+
+    Raises
+    ------
+    FormatError
+        One without the other.
+    """
+    both = {column.unit: column for column in times if column.unit in DAY}
+    if not both:
+        if len(times) != 1 or times[0].unit not in {"utc", "utc_text"} or times[0].name not in of_day:
+            return times
+        both = {"utc_time_of_day": Column("time", times[0].name, "utc_time_of_day")}
+    plain = _by_form(names)
+    if "utc_date" not in both:
+        name = next((plain[alias] for alias in DATE_NAMES if alias in plain), None)
+        if name is None:
+            time = both["utc_time_of_day"].name
+            what = f"“{time}” holds times of day and no date, and no column is named {', '.join(DATE_NAMES)}"
+            how = declare("utc_date=COLUMN", f"utc_time_of_day={time}")
+            raise FormatError(path, f"{what}; {how}, or write both in one column (2024-05-13T12:30:01Z)", 1, "time")
+        both["utc_date"] = Column("time", name, "utc_date")
+    if "utc_time_of_day" not in both:
+        name = next((plain[alias] for alias, unit in TIME_NAMES.items() if unit == "utc" and plain.get(alias) in of_day), None)
+        if name is None:
+            date, how = both["utc_date"].name, declare("utc_time_of_day=COLUMN")
+            raise FormatError(path, f"“{date}” is {DAY['utc_date']}, and no column is {DAY['utc_time_of_day']}; {how}", 1, "time")
+        both["utc_time_of_day"] = Column("time", name, "utc_time_of_day")
+    return [both["utc_date"], both["utc_time_of_day"]]
+
+
 def _column_named(value: str, names: list[str]) -> tuple[str, str]:
     """``column:unit`` to both; a name may have a colon of its own."""
     name, separator, unit = value.rpartition(":")
@@ -452,10 +500,14 @@ def _declared(key: str, value: str, names: list[str], path: Path, known: tuple[Q
         if unit not in TIME_UNITS:
             raise InputError("columns", value, domain=f"units of time: {', '.join(TIME_UNITS)}")
         return Column("time", name, unit)
-    if key in WEEK:
+    if key == "utc_date" and unit:
+        if unit not in DATE_ORDERS:
+            raise InputError("columns", value, domain=f"orders of a date: {', '.join(DATE_ORDERS)}")
+        return Column("time", name, key, order=unit)
+    if key in WEEK | DAY:
         return Column("time", name, key)
     if key not in quantities:
-        raise InputError("columns", key, domain=f"known quantities: time, {', '.join((*WEEK, *quantities))}")
+        raise InputError("columns", key, domain=f"known quantities: time, {', '.join((*WEEK, *DAY, *quantities))}")
     q = quantities[key]
     stated = unit or _written_unit(name, q, path)
     unit = stated or q.aliases.get(_plain(name)[0], q.si)

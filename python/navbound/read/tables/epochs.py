@@ -17,9 +17,10 @@ from navbound.read.checks.repeats import left_out, shared_words, unread_rows, wi
 from navbound.read.checks.stated import of_counted_satellites
 from navbound.read.source import Source, load
 from navbound.read.tables.columns import POSITION, Assignment, assign, truth_as_position
+from navbound.read.tables.dates import of_day
 from navbound.read.tables.stated_units import require_same_in_remarks
 from navbound.read.tables.table import LINE, Table, table
-from navbound.read.tables.values import Late, Values, one_row_a_time, texts
+from navbound.read.tables.values import SHOWN, Late, Values, one_row_a_time, texts
 from navbound.records.material import LEFT_OUT
 from navbound.table.columns import COVARIANCE
 
@@ -124,7 +125,15 @@ def _read(
     if beside:
         # A file of the truth may call its positions so.
         columns = truth_as_position(content.columns) | dict(columns or {})
-    mapping = assign(content.columns, columns, source.path, needs=needs, texts=texts(content.frame), where_present=where_present)
+    mapping = assign(
+        content.columns,
+        columns,
+        source.path,
+        needs=needs,
+        texts=texts(content.frame),
+        of_day=of_day(content.frame.head(SHOWN)),
+        where_present=where_present,
+    )
     if source.kind == "csv":
         require_same_in_remarks(source.text(), mapping, source.path)
     return _epochs(source, content, mapping, [name for name in POSITION if name in needs], beside=beside)

@@ -10,6 +10,8 @@ import polars as pl
 
 from navbound import _core
 from navbound.errors import FormatError
+from navbound.read.checks.statements import name_parts
+from navbound.read.tables import dates
 from navbound.read.tables.columns import declare
 
 if TYPE_CHECKING:
@@ -45,17 +47,23 @@ class TimeFacts:
         Some field ends in a time zone.
     early : bool
         Every week is below 1024.
+    orders : Orders
+        What dates in a column of their own state of their order.
     """
 
     numbers: NDArray[np.float64]
     n_text: int
     zoned: bool
     early: bool
+    orders: dates.Orders = dates.NO_ORDER
 
     @classmethod
     def of(cls, frame: pl.DataFrame, columns: list[Column]) -> TimeFacts:
         """Facts of all rows, or of some."""
         first, unit = frame[columns[0].name], columns[0].unit
+        if unit == "utc_date":
+            zoned = dates.is_zoned(frame[columns[1].name])
+            return cls(np.empty(0), 0, zoned=zoned, early=False, orders=dates.Orders.of(first))
         if unit in {"gps_week", "gps_tow_s"}:
             week = _plain_numbers(frame[next(c.name for c in columns if c.unit == "gps_week")])
             return cls(np.empty(0), 0, zoned=True, early=bool((week < 1024).all()))
@@ -78,11 +86,22 @@ class TimeFacts:
         numbers = np.concatenate([f.numbers for f in facts]) if facts else np.empty(0)
         # Where a piece is numbers alone its zones were not looked for.
         zoned = any(f.zoned for f in facts if f.n_text) if any(f.n_text for f in facts) else any(f.zoned for f in facts)
-        return cls(numbers, sum(f.n_text for f in facts), zoned, all(f.early for f in facts))
+        orders = dates.Orders.together(f.orders for f in facts)
+        return cls(numbers, sum(f.n_text for f in facts), zoned, all(f.early for f in facts), orders)
+
+
+def shown(frame: pl.DataFrame, columns: list[Column]) -> tuple[str, pl.Series]:
+    """What a refusal of a row names: the column, and what stands in it; a date and its time of day are named together."""
+    first = frame[columns[0].name]
+    if columns[0].unit != "utc_date":
+        return columns[0].name, first
+    return " and ".join(column.name for column in columns), dates.as_written(first, frame[columns[1].name])
 
 
 def units(columns: list[Column], understood: str) -> list[str]:
     """``column:unit`` of the columns used, as they were understood."""
+    if columns[0].unit == "utc_date":
+        return [f"{columns[0].name}:{understood}", f"{columns[1].name}:{columns[1].unit}"]
     if columns[0].unit.startswith("utc"):
         return [f"{columns[0].name}:{understood}"]
     return [f"{c.name}:{c.unit}" for c in columns]
@@ -97,6 +116,8 @@ def understand(facts: TimeFacts, columns: list[Column], dtype: pl.DataType, path
         Numbers that are no times.
     """
     name, unit = columns[0].name, columns[0].unit
+    if unit == "utc_date":
+        return _understand_date(facts, columns, path, notes)
     if dtype in (pl.Datetime, pl.Date):
         if getattr(dtype, "time_zone", None) is None:
             notes.append(f"{path.name}: “{name}” has no time zone and was read as UTC")
@@ -119,12 +140,25 @@ def understand(facts: TimeFacts, columns: list[Column], dtype: pl.DataType, path
     if unit == "utc":
         unit = next((u for u, low in (("utc_ns", 1e17), ("utc_us", 1e14), ("utc_ms", 1e11), ("utc_s", 1e8)) if size >= low), "")
         if not unit and not since_start:
-            words = f"the values (median {size:g}) are not Unix times; {declare(f'time={name}:gps_s')}"
+            clock = f". {_CLOCK}" if size < _LAST_CLOCK else ""
+            words = f"the values (median {size:g}) are not Unix times; {declare(f'time={name}:gps_s')}{clock}"
             raise FormatError(path, words, field=name)
     if since_start:
         raise FormatError(path, since_start, field=name)
     return unit
 
+
+def _understand_date(facts: TimeFacts, columns: list[Column], path: Path, notes: list[str]) -> str:
+    """The order of a date whose time of day stands in a column of its own."""
+    of_utc = any({"utc", "gmt"} & set(name_parts(column.name)) for column in columns)
+    if not (facts.zoned or of_utc):
+        notes.append(f"{path.name}: “{columns[0].name}” and “{columns[1].name}” have no time zone and were read as UTC")
+    return facts.orders.order(columns[0], path, notes)
+
+
+_LAST_CLOCK = 240_000.0
+"""Times of day written as one number, 12:30:01 as 123001, are below it."""
+_CLOCK = "Times of day are read as 12:30:01, with a column of their dates beside them (2024-05-13)"
 
 _SCALES_NS = {f"{scale}_{unit}": ns for scale in ("utc", "gps") for unit, ns in {"s": 1e9, "ms": 1e6, "us": 1e3, "ns": 1.0}.items()}
 
@@ -132,7 +166,11 @@ _SCALES_NS = {f"{scale}_{unit}": ns for scale in ("utc", "gps") for unit, ns in 
 def converted(frame: pl.DataFrame, columns: list[Column], unit: str) -> tuple[pl.Series, pl.Series]:
     """GPS time of every row in a unit that was understood, and why a row has none."""
     first = frame[columns[0].name]
-    if first.dtype in (pl.Datetime, pl.Date):
+    if columns[0].unit == "utc_date":
+        times = frame[columns[1].name]
+        text = dates.joined(first, times, unit)
+        ns, first = _with_leap_seconds(text, _iso(text)), dates.as_written(first, times)
+    elif first.dtype in (pl.Datetime, pl.Date):
         ns = _from_unix(first.cast(pl.Datetime("ns")).cast(pl.Int64))
     elif unit in {"gps_week", "gps_tow_s"}:
         by = {c.unit: c for c in columns}

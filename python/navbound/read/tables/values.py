@@ -23,7 +23,7 @@ from navbound.read.tables.columns import POSITION, Assignment, Column, declare, 
 from navbound.read.tables.names import Callsigns, one_writing
 from navbound.read.tables.stated_units import is_row_of_units, require_same
 from navbound.read.tables.table import LINE
-from navbound.read.tables.times import TimeFacts, converted, understand, units
+from navbound.read.tables.times import TimeFacts, converted, shown, understand, units
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -50,13 +50,13 @@ _HIGH_M, _LIKE = 300.0, 0.1
 _LEAST_EPU_M = 1.0
 """A smaller radius that holds 95 % is one of a phase solution in metres, or one in nautical miles. Provenance: ours. [m]"""
 
-_SHOWN = 20
+SHOWN = 20
 """Rows that show whether a column holds words: as many as the shortest piece of a file has. Provenance: ours."""
 
 
 def texts(frame: pl.DataFrame) -> set[str]:
     """Columns of text of which something is written in the first rows, and nothing there is a number."""
-    head = frame.head(_SHOWN)
+    head = frame.head(SHOWN)
     strings = [name for name, dtype in head.schema.items() if dtype == pl.String and name != LINE]
     written = {name: head[name].str.strip_chars().set(head[name].str.strip_chars().str.contains(MISSING), None) for name in strings}
     return {name for name, each in written.items() if each.count() and each.cast(pl.Float64, strict=False).count() == 0}
@@ -393,13 +393,13 @@ class Values:
         """Rows with GPS time and track that may be epochs; and those that may not, which are counted, as :func:`expected` has them."""
         raw = _written(part)
         time, reason = converted(raw, self._mapping.times, self._unit)
-        name = self._mapping.times[0].name
+        name, written = shown(raw, self._mapping.times)
         part = self._without_nowhere(part)
         timeless = raw.select(pl.when(reason.is_not_null()).then(pl.concat_str(pl.lit(f"{name}: "), reason))).to_series()
         out = part.with_columns(
             time.alias("time_ns"),
             pl.coalesce(_BAD, timeless).alias(_BAD),
-            pl.when(pl.col(_BAD).is_null()).then(_text(raw[name], timeless.is_not_null())).otherwise(pl.col(_EXAMPLE)).alias(_EXAMPLE),
+            pl.when(pl.col(_BAD).is_null()).then(_text(written, timeless.is_not_null())).otherwise(pl.col(_EXAMPLE)).alias(_EXAMPLE),
         )
         self.position_doubts += self._further.against(out["time_ns"], raw)
         out = self._positions_dated(out, raw).drop(pl.selectors.starts_with(_RAW))
