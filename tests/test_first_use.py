@@ -11,6 +11,7 @@ import pytest
 
 import navbound
 from navbound import FormatError, InputError, write
+from navbound.cli import main as cli
 from navbound.read import read
 from navbound.read.checks.statements import other_place
 from navbound.read.pieces.reading import read_pieces
@@ -162,3 +163,35 @@ def test_a_time_of_day_without_a_date_says_what_is_missing(tmp_path: Path) -> No
         _analyzed(tmp_path, day, columns={"utc_date": "jour"})
     with pytest.raises(FormatError, match="Times of day are read as 12:30:01, with a column of their dates"):
         _analyzed(tmp_path, _way(time=[123_000 + k for k in range(60)], date=[130_524] * 60))
+
+
+def _sentence(words: str) -> str:
+    checksum = 0
+    for letter in words:
+        checksum ^= ord(letter)
+    return f"${words}*{checksum:02X}\r\n"
+
+
+def _rmc(n: int = 3) -> str:
+    return "".join(_sentence(f"GPRMC,1230{k:02d}.00,A,4800.{k:04d},N,01100.0000,E,120.0,021.0,130524,,,A") for k in range(n))
+
+
+def test_sentences_of_a_place_alone_say_what_they_lack(tmp_path: Path) -> None:
+    (tmp_path / "a.nmea").write_text(_rmc())
+    with pytest.raises(FormatError, match=r"its 3 RMC sentences state latitude and longitude without height, .*Switch GGA on .*--sigma-m"):
+        read(tmp_path / "a.nmea")
+
+
+def test_live_says_which_sentences_are_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "a.nmea").write_text(_rmc())
+    assert _navbound("live", tmp_path / "a.nmea", "--format", "nmea", "--sigma-m", "5", "--out", tmp_path / "live") == 4
+    words = " ".join(capsys.readouterr().out.split())
+    assert "positions are read of GGA, dated by RMC or ZDA; RMC and GLL alone state no height, satellites or accuracy" in words
+
+
+def _navbound(*arguments: object) -> int:
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("sys.argv", ["navbound", *map(str, arguments)])
+        with pytest.raises(SystemExit) as ended:
+            cli.main()
+    return int(ended.value.code or 0)

@@ -5,6 +5,8 @@ What the fields mean stands in docs/methods/formats.md with its source.
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +15,7 @@ import polars as pl
 from navbound import _core, status
 from navbound.errors import FormatError
 from navbound.table.columns import COVARIANCE
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from navbound.read.source import Source
@@ -92,7 +95,7 @@ def read(source: Source, name: str) -> Log:
         raise FormatError(source.path, _undated(log["n_rows"], n_damaged), log["undated"], "date")
     if log["n_rows"] == 0:
         what = f"a log of kind {name} without a message that positions are read from ({MESSAGES[name]})"
-        raise FormatError(source.path, what + _solvable(source))
+        raise FormatError(source.path, what + _places_alone(source) + _solvable(source))
     epochs = _epochs(log)
     notes = _notes(source, log)
     if not epochs[COVARIANCE[0]].is_finite().any() and (solvable := _solvable(source)):
@@ -114,14 +117,29 @@ def _notes(source: Source, fields: dict[str, Any]) -> list[str]:
     return [f"{source.path.name}: {note}" for note in notes]
 
 
+_PLACES = re.compile(rb"\$[A-Z]{2}(RMC|GLL),")
+
+
+def _places_alone(source: Source) -> str:
+    """What the sentences of NMEA lack that hold a place and are not read, and what to do."""
+    n_of = Counter(match[1].decode() for match in _PLACES.finditer(source.content)) if source.format.id == "nmea" else Counter[str]()
+    if not n_of:
+        return ""
+    counts = " and ".join(counted(n, f"{name} sentence") for name, n in sorted(n_of.items()))
+    return (
+        f"; its {counts} {agreeing(n_of.total(), 'states', 'state')} latitude and longitude without height, satellites, dilution or "
+        "accuracy. Switch GGA on in the receiver (and GST, which states the accuracy), or write time, lat and lon as a table and state "
+        "the accuracy with --sigma-m"
+    )
+
+
 def _solvable(source: Source) -> str:
     """What a log without positions may still be used for."""
     n_epochs, n_records, _ = _core.raw_log(source.content, str(source.path)) or (0, 0, 0)
     if not n_epochs:
         return ""
     orbits = "" if n_records else " (and a RINEX navigation file of its time, as the log holds no orbits)"
-    epochs = "1 epoch" if n_epochs == 1 else f"{n_epochs} epochs"
-    return f"; it holds raw measurements of {epochs}: with --solve{orbits} positions are solved from them"
+    return f"; it holds raw measurements of {counted(n_epochs, 'epoch')}: with --solve{orbits} positions are solved from them"
 
 
 def _undated(n_positions: int, n_damaged: int) -> str:

@@ -397,6 +397,18 @@ def compare(a: Annotated[Path, typer.Argument(help="Folder of a session.")], b: 
         raise typer.Exit(OUR_BUG)
 
 
+def _unread(format_id: str) -> str:
+    """What a source has to send that is read as this format; a source in which nothing was read may be of another one."""
+    from navbound.read.receivers import MESSAGES  # noqa: PLC0415
+
+    needs = f"; positions are read of {MESSAGES[format_id]}" if format_id in MESSAGES else ""
+    if format_id == "nmea":
+        needs += ", dated by RMC or ZDA; RMC and GLL alone state no height, satellites or accuracy"
+    elif format_id == "json":
+        needs = "; a line is an object with at least v (1), track, time_ns, est_lat_rad, est_lon_rad"
+    return f"nothing of the source is read as {format_id}{needs}; if it sends something else, --format states what"
+
+
 def _ended(session: Session, settings: Settings, *, json: bool) -> None:
     from navbound.live.sinks import tables  # noqa: PLC0415
     from navbound.live.statements import unread  # noqa: PLC0415
@@ -415,9 +427,8 @@ def _ended(session: Session, settings: Settings, *, json: bool) -> None:
         f"session in {session.folder}"
     )
     if not session.n_epochs:
-        needs = "; a line is an object with at least v (1), track, time_ns, est_lat_rad, est_lon_rad" if settings.format == "json" else ""
         unreadable = not counters["n_records"] and not counters["refused_too_old"]
-        why = f": nothing of the source is read as {settings.format}{needs}; --format names what it sends" if unreadable else ""
+        why = f": {_unread(settings.format)}" if unreadable else ""
         sentence += f"; no epoch was judged{why}"
     if settings.assumed:
         sentence += f"; {settings.assumed}"
