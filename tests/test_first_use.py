@@ -195,3 +195,28 @@ def _navbound(*arguments: object) -> int:
         with pytest.raises(SystemExit) as ended:
             cli.main()
     return int(ended.value.code or 0)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--speed", "fast"), "--speed = fast is not accepted; expected a number; it is: Of a file: times its own pace, 0 or more;"),
+        (("--speed", "-1"), "--speed = -1.0 [1] is outside [0, inf)"),
+        (("--port", "1.5"), "--port = 1.5 is not accepted; expected a whole number; it is: Port of the display."),
+        (("--format", "csv"), "--format = csv is not accepted; expected one of json, readsb,"),
+    ],
+)
+def test_a_wrong_number_says_what_is_allowed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: tuple[str, str], words: str
+) -> None:
+    (tmp_path / "a.nmea").write_text(_rmc())
+    assert _navbound("live", tmp_path / "a.nmea", *arguments) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_evaluate_names_the_commands_for_positions_without_levels(tmp_path: Path) -> None:
+    write.rtklib(solution(20), tmp_path / "a.pos")
+    _way(20).write_csv(tmp_path / "a.csv")
+    for name in ("a.pos", "a.csv"):
+        with pytest.raises(FormatError, match=r"hpl_m: no column holds .*`navbound analyze`; .* by `navbound evaluate --protection`"):
+            navbound.evaluate(tmp_path / name, levels="APV-I", out=tmp_path / "run")

@@ -166,7 +166,13 @@ def _of_parser(refusal: Any) -> str:
     typed = _typed(parameter.opts)
     if type(refusal).__name__ == "MissingParameter" or typed is None or typed in text:
         return f"{text.removesuffix('.')}: {meant}"
-    return f"{parameter.opts[0]} = {typed} is not accepted: {text.partition(': ')[2] or text}; it is: {meant}"
+    what = text.partition(": ")[2] or text
+    allowed = next((f"; expected {number}" for words, number in _NUMBERS.items() if words in what), f": {what}")
+    return f"{parameter.opts[0]} = {typed} is not accepted{allowed}; it is: {meant}"
+
+
+_NUMBERS = {"valid number": "a number", "valid integer": "a whole number"}
+"""What is allowed, by the words of the parser's library."""
 
 
 def _typed(options: list[str]) -> str | None:
@@ -185,7 +191,10 @@ def _option(argument: str) -> str:
         if word not in getattr(command, "commands", {}):
             break
         command = command.commands[word]
-    names: dict[str, str] = {parameter.name: parameter.opts[0] for parameter in command.params}
+    # A group whose first word may be no command.
+    command = getattr(command, "commands", {}).get(getattr(command, "unnamed", ""), command)
+    names: dict[str, str] = {opt.removeprefix("--").replace("-", "_"): opt for parameter in command.params for opt in parameter.opts}
+    names |= {parameter.name: parameter.opts[0] for parameter in command.params}
     return names.get({"columns": "column"}.get(argument, argument), argument)
 
 

@@ -44,7 +44,7 @@ LineForm = Annotated[
 ]
 RnpTable = Annotated[Path | None, typer.Option(help="File with RNP values by area and by track.")]
 Spool = Annotated[Path | None, typer.Option(help="Folder in which what was read waits for a broker. [default: out/spool/NAME]")]
-Speed = Annotated[float, typer.Option(help="Of a file: times its own pace; 0 as fast as it goes.")]
+Speed = Annotated[float, typer.Option(help="Of a file: times its own pace, 0 or more; 0 is as fast as it goes.")]
 Lateness = Annotated[float, typer.Option(help="How long the order of a track is waited for.")]
 Expiry = Annotated[float, typer.Option(help="Silence after which a track is forgotten.")]
 

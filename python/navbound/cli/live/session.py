@@ -29,10 +29,12 @@ if TYPE_CHECKING:
 class SourceFirst(TyperGroup):
     """`navbound live SOURCE` is `navbound live watch SOURCE`."""
 
+    unnamed = "watch"
+
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Put the name of the command before what is none."""
         named = not args or args[0] in self.commands or args[0] == "--help"
-        return super().parse_args(ctx, args if named else ["watch", *args])
+        return super().parse_args(ctx, args if named else [self.unnamed, *args])
 
 
 app = typer.Typer(cls=SourceFirst, help="Judge data that are still arriving: navbound live SOURCE ...", no_args_is_help=True)
@@ -76,7 +78,7 @@ def watch(
     lateness_s: Annotated[float, typer.Option(help="How long the order of a track is waited for; 1 for a fleet.")] = 0.0,
     expiry_s: Annotated[float | None, typer.Option(help="Silence after which a track is forgotten. [default: never]")] = None,
     standing: Annotated[bool, typer.Option("--standing", help="The receiver stands: a position that repeats is not held.")] = False,
-    speed: Annotated[float, typer.Option(help="Of a file: times its own pace; 0 as fast as it goes.")] = 0.0,
+    speed: Annotated[float, typer.Option(help="Of a file: times its own pace, 0 or more; 0 is as fast as it goes.")] = 0.0,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the session in --out.")] = False,
     display: ShowDisplay = False,
     port: DisplayPort = 0,
@@ -286,7 +288,7 @@ class _Post:
 def replay(
     recording: Annotated[Path, typer.Argument(help="Folder of a session or its journal in (in.nvj); a run directory; a log.")],
     out: SessionOut = Path("out/replay"),
-    speed: Annotated[float, typer.Option(help="Times the pace of the data; 0 as fast as it goes.")] = 1.0,
+    speed: Annotated[float, typer.Option(help="Times the pace of the data, 0 or more; 0 is as fast as it goes.")] = 1.0,
     group: Annotated[int, typer.Option(help="Inputs of a journal that are judged at once.")] = 1,
     spec: Annotated[str | None, typer.Option(help="Of a run or a log: as of `navbound live`. [default: RNP 0.3]")] = None,
     path: Course = None,

@@ -540,6 +540,13 @@ def truth_as_position(names: Iterable[str]) -> dict[str, str]:
     return {of_truth[quantity]: f"{name}:{unit}" for name, (quantity, unit) in known.items() if quantity in of_truth}
 
 
+WITHOUT_LEVEL = (
+    "positions with a covariance and no protection level are judged by `navbound analyze`; protection levels are made of observations "
+    "(RINEX with navigation files, or a receiver's log with --solve) by `navbound evaluate --protection`"
+)
+"""What to do with a file whose protection levels are to be judged and that has none."""
+
+
 def declare(*columns: str) -> str:
     """How a person declares what a column is, from the command line and in Python."""
     options = " ".join(f'--map "{column}"' for column in columns)
@@ -565,12 +572,13 @@ def _require(columns: dict[str, Column], times: list[Column], names: list[str], 
             of_truth = f"the file has the true position ({', '.join(truth[:3])}) and no estimate"
             advice = "name it with --truth beside the recording that it is the truth of"
             raise FormatError(path, f"no column holds it; {of_truth}: {advice}", 1, need)
+        without = f"; {WITHOUT_LEVEL}" if need in {"hpl_m", "vpl_m"} else ""
         unit = {"time": _unit_of_time(best[0]), "est_lat_rad": "deg", "est_lon_rad": "deg"}.get(need, "m")
         more = f"; units: {', '.join(TIME_UNITS)}" if need == "time" else ""
         raise FormatError(
             path,
             f"no column holds it (known names: {', '.join(known[:6])}, ...); the file has {', '.join(best)}{others}; "
-            f"if one of them is it, {declare(f'{need}=COLUMN:{unit}')}{more}",
+            f"if one of them is it, {declare(f'{need}=COLUMN:{unit}')}{more}{without}",
             1,
             need,
         )

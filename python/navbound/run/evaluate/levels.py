@@ -16,6 +16,7 @@ from navbound.kpi.tables import with_larger_error
 from navbound.read.checks.places import header_against
 from navbound.read.checks.refusals import of_navigation, of_observations, rejections, require_most_epochs, skipped_words
 from navbound.read.checks.stated import ALERT, BESIDE_LEVEL, NO_LEVEL, UNREAD_ERROR
+from navbound.read.tables.columns import WITHOUT_LEVEL
 from navbound.read.tables.epochs import read
 from navbound.read.truth import Truth, with_error, with_truth
 from navbound.run.evaluate import sky
@@ -116,7 +117,9 @@ def from_table(path: Path, truth: Truth, needs: Sequence[str] = ("hpl_m",)) -> P
     reading = read(path, columns=truth.columns_of_estimates, needs=needs)
     for name in needs:
         if name not in reading.epochs.columns:
-            raise FormatError(path, "no column holds this protection level, which the levels to be judged need", field=name)
+            raise FormatError(
+                path, f"no column holds this protection level, which the levels to be judged need; {WITHOUT_LEVEL}", field=name
+            )
     tracks = reading.epochs["track"].unique().sort().to_list()
     if len(tracks) > 1:
         raise InputError("files", f"{path}: tracks {', '.join(map(str, tracks[:4]))}", domain="the series of one receiver in each file")
