@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import datetime as dt
+import gzip
+import json
+import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -220,3 +223,67 @@ def test_evaluate_names_the_commands_for_positions_without_levels(tmp_path: Path
     for name in ("a.pos", "a.csv"):
         with pytest.raises(FormatError, match=r"hpl_m: no column holds .*`navbound analyze`; .* by `navbound evaluate --protection`"):
             navbound.evaluate(tmp_path / name, levels="APV-I", out=tmp_path / "run")
+
+
+def _json(n: int = 20) -> list[dict[str, Any]]:
+    return _way(n).to_dicts()
+
+
+@pytest.mark.parametrize("back", [1, 3, 7, 21, 40, 60])
+def test_a_json_file_that_is_cut_says_where_it_ends(tmp_path: Path, back: int) -> None:
+    """Within a number, a name, a time and between them."""
+    whole = json.dumps(_json(), indent=1)
+    (tmp_path / "a.json").write_text(part := whole[:-back].rstrip())
+    with pytest.raises(FormatError, match=rf"ends in line \d+, after byte {len(part)}, .*the file looks cut: get it whole") as refused:
+        read(tmp_path / "a.json")
+    assert refused.value.line == part.count("\n") + 1
+
+
+@pytest.mark.parametrize("back", [1, 5, 12, 30])
+def test_json_lines_that_are_cut_say_so(tmp_path: Path, back: int) -> None:
+    whole = "\n".join(json.dumps(record) for record in _json())
+    (tmp_path / "a.json").write_text(whole[:-back])
+    with pytest.raises(FormatError, match=rf"on each line: the text ends in line 20, after byte {len(whole) - back}, .*looks cut"):
+        read(tmp_path / "a.json")
+
+
+@pytest.mark.parametrize("text", ['[{"a": foo', "[1, 2}", "[1] 5", '{"a": 1} 5', '[{"a" 1}]'])
+def test_other_faults_of_json_are_no_cut(tmp_path: Path, text: str) -> None:
+    (tmp_path / "a.json").write_text(text)
+    with pytest.raises(FormatError) as refused:
+        read(tmp_path / "a.json")
+    assert "cut" not in refused.value.message
+
+
+def test_a_gzip_file_that_is_cut_says_how_much_of_it_there_is(tmp_path: Path) -> None:
+    plain = _way().write_csv().encode()
+    whole = gzip.compress(plain, mtime=0)
+    two = gzip.compress(plain[:100], mtime=0) + whole
+    for stored in (
+        whole[:-1],
+        whole[:-8],
+        whole[: len(whole) // 2],
+        whole[:11],
+        two[:-20],
+        two[: len(two) - len(whole) + 2],
+        two[: len(two) - len(whole) + 1],
+    ):
+        (tmp_path / "a.csv.gz").write_bytes(stored)
+        n_plain = _unpacked(stored)
+        words = rf"the gzip stream is damaged: it ends .* after {len(stored)} bytes, which unpack to {n_plain}; the file looks cut: get it"
+        with pytest.raises(FormatError, match=words):
+            read(tmp_path / "a.csv.gz")
+    (tmp_path / "a.csv.gz").write_bytes(whole[:-8] + b"\0" * 8)
+    with pytest.raises(FormatError, match="the gzip stream is damaged: ") as refused:
+        read(tmp_path / "a.csv.gz")
+    assert "cut" not in refused.value.message
+
+
+def _unpacked(stored: bytes) -> int:
+    """By another way: one byte at a time, of each member."""
+    stream, n = zlib.decompressobj(31), 0
+    for k in range(len(stored)):
+        if stream.eof:
+            stream = zlib.decompressobj(31)
+        n += len(stream.decompress(stored[k : k + 1]))
+    return n

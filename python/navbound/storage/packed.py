@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import stat
+import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -107,8 +108,38 @@ def plain(path: str | Path, stored: bytes) -> bytes:
     FormatError
         A damaged stream, one that unpacks to more than the limit, or a packing that is not read, which is named.
     """
-    unpacked = _core.unpack(stored, str(path), *limit())
+    try:
+        unpacked = _core.unpack(stored, str(path), *limit())
+    except FormatError as e:
+        if (n_plain := _cut_after(stored, limit()[0])) is None:
+            raise
+        where = f"it ends within its packed data, after {len(stored)} bytes, which unpack to {n_plain}"
+        how = "get it whole, or write what is left of it to a file first (gzip -dc FILE > PART)"
+        raise FormatError(path, f"the gzip stream is damaged: {where}; the file looks cut: {how}") from e
     return stored if unpacked is None else unpacked
+
+
+_GZIP, _GZIP_WINDOW = b"\x1f\x8b", 31
+_PIECE_BYTES, _STEP_BYTES = 1 << 16, 1 << 20
+
+
+def _cut_after(stored: bytes, most: int) -> int | None:
+    """How many bytes a gzip file unpacks to that ends too early; None where it does not, or where its data are damaged. [B]."""
+    n_plain, at, stream = 0, 0, None
+    try:
+        while at < len(stored) and n_plain <= most:
+            if stream is None:
+                # Files of several members are one after the other.
+                if stored[at : at + 2] != _GZIP[: len(stored) - at]:
+                    return None
+                stream = zlib.decompressobj(_GZIP_WINDOW)
+            piece = stored[at : at + _PIECE_BYTES]
+            n_plain += len(stream.decompress(piece, _STEP_BYTES))
+            at += len(piece) - len(stream.unconsumed_tail) - len(stream.unused_data)
+            stream = None if stream.eof else stream
+    except zlib.error:
+        return None
+    return n_plain if stream is not None and n_plain <= most else None
 
 
 def require_room(path: str | Path, packed: int, unpacked: int) -> None:

@@ -423,15 +423,28 @@ def _json_of(source: Source) -> Any:
         return _whole_characters(source, text, decoder.decode(text))
     except json.JSONDecodeError as e:
         if e.msg != "Extra data" or not text.lstrip().startswith("{"):
-            raise FormatError(source.path, f"not JSON: {e.msg}", e.lineno) from e
-    records = list[Any]()
-    for number, line in enumerate(text.splitlines(), 1):
+            raise _refused(source, "not JSON", e, e.lineno, text[e.pos :]) from e
+    records, lines = list[Any](), text.rstrip().splitlines()
+    for number, line in enumerate(lines, 1):
         if line.strip():
             try:
                 records.append(decoder.decode(line))
             except json.JSONDecodeError as e:
-                raise FormatError(source.path, f"not an object of JSON on each line: {e.msg}", number) from e
+                rest = line[e.pos :] if number == len(lines) else None
+                raise _refused(source, "not an object of JSON on each line", e, number, rest) from e
     return _whole_characters(source, text, records)
+
+
+_CUT = r'\s*("([^"\\]|\\.)*\\?|-?[\d.eE+-]*|t(ru?)?|f(a(ls?)?)?|n(ul?)?|u\w*)\s*'
+"""What is left of a text that ends within a value, from where a parser refuses it."""
+
+
+def _refused(source: Source, what: str, error: json.JSONDecodeError, line: int, rest: str | None) -> FormatError:
+    """A text that ends too early is named as one, by its `rest` from the error on; anything else is what the parser says."""
+    if rest is None or error.msg == "Extra data" or not re.fullmatch(_CUT, rest):
+        return FormatError(source.path, f"{what}: {error.msg}", line)
+    where = f"the text ends in line {line}, after byte {len(source.content.rstrip())}, within an object, a list or a value"
+    return FormatError(source.path, f"{what}: {where}; the file looks cut: get it whole, or take the unfinished record out", line)
 
 
 _MOST_DIGITS = 20
