@@ -287,3 +287,63 @@ def _unpacked(stored: bytes) -> int:
             stream = zlib.decompressobj(31)
         n += len(stream.decompress(stored[k : k + 1]))
     return n
+
+
+def _altitudes(n: int = 60) -> list[float]:
+    return [500.0 + 2.0 * k for k in range(n)]
+
+
+@pytest.mark.parametrize(
+    "beside",
+    [
+        # Sensor Logger, Android, OwnTracks, a browser.
+        {"horizontalAccuracy": 4.0, "verticalAccuracy": 6.0, "speedAccuracy": 1.0, "bearingAccuracy": 3.0},
+        {"accuracy": 4.0, "verticalAccuracyMeters": 6.0},
+        {"horizontal_accuracy": 4.0, "vertical_accuracy": 6.0},
+        {"accuracy": 4.0, "altitudeAccuracy": 6.0},
+    ],
+)
+def test_the_altitude_of_a_phone_is_in_metres(tmp_path: Path, beside: dict[str, float]) -> None:
+    table = _way(altitude=_altitudes()).with_columns(**{name: pl.lit(value) for name, value in beside.items()})
+    table.write_csv(tmp_path / "a.csv")
+    reading = read(tmp_path / "a.csv")
+    assert reading.epochs["altitude_m"].to_list() == _altitudes()
+    (note,) = [each for each in reading.notes if "“altitude”" in each]
+    assert "states no unit and is read in metres, as the names “" in note
+    assert '--map "altitude_m=altitude:ft"' in note
+    in_feet = read(tmp_path / "a.csv", columns={"altitude_m": "altitude:ft"})
+    assert in_feet.epochs["altitude_m"][0] == pytest.approx(152.4)
+    # States of transponders have it in feet, whatever else they have.
+    table.with_columns(icao24=pl.lit("4ca123")).write_csv(tmp_path / "a.csv")
+    assert read(tmp_path / "a.csv").epochs["altitude_m"][0] == pytest.approx(152.4)
+
+
+@pytest.mark.parametrize("piece_rows", [None, 20])
+@pytest.mark.parametrize(
+    ("beside", "metres"),
+    [
+        ({"Altitude (Ellipsoid)": [547.0 + 2.0 * k for k in range(60)]}, True),
+        ({"height_m": [547.0 + 2.0 * k for k in range(60)]}, True),
+        ({"height_m": [0.3048 * (500.0 + 2.0 * k) + 47.0 for k in range(60)]}, False),
+        # Its unit rests on its name, too.
+        ({"height": [547.0 + 2.0 * k for k in range(60)]}, False),
+        ({"climb_rate_mps": [2.0] * 60}, True),
+        ({"climb_rate_mps": [2.0 * 0.3048] * 60}, False),
+        ({"vertical_rate (m/s)": [2.0] * 60}, True),
+        ({"vertical_rate": [2.0 * 60] * 60}, False),
+        ({"height_m": [547.0 + 2.0 * k for k in range(60)], "climb_rate_mps": [2.0 * 0.5] * 60}, False),
+    ],
+)
+def test_a_height_or_a_climb_rate_decides_the_unit_of_an_altitude(
+    tmp_path: Path, beside: dict[str, list[float]], metres: bool, piece_rows: int | None
+) -> None:
+    _way(altitude=_altitudes(), **beside).write_csv(tmp_path / "a.csv")
+    if piece_rows is None:
+        epochs, notes = (reading := read(tmp_path / "a.csv")).epochs, reading.notes
+    else:
+        in_pieces = read_pieces(tmp_path / "a.csv", piece_rows=piece_rows)
+        epochs, notes = pl.concat(in_pieces.epochs()), in_pieces.notes
+    assert epochs["altitude_m"].to_list() == pytest.approx([value * (1.0 if metres else 0.3048) for value in _altitudes()])
+    agrees = f"“altitude” states no unit and is read in metres, in which it agrees with “{next(iter(beside))}” at "
+    assert any(agrees in each for each in notes) == metres
+    assert any("“altitude” states no unit and is read in feet" in each for each in notes) != metres

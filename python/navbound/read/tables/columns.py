@@ -6,7 +6,7 @@ import difflib
 import functools
 import math
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError, InputError
@@ -68,6 +68,8 @@ class Column:
     """Whether the file or the caller says the unit; otherwise it is the usual one of the name."""
     order: str = ""
     """Of a date of numbers, as the caller states it."""
+    because: str = ""
+    """Why it is read in this unit, where names beside it say so; the rest of a sentence."""
 
 
 @dataclass(frozen=True)
@@ -217,6 +219,8 @@ def assign(
             if assigned is not None:
                 columns[quantity.name] = assigned
                 taken.add(assigned.name)
+    if (altitude := _of_phone(columns.get("altitude_m"), names)) is not None:
+        columns["altitude_m"] = altitude
     if not times:
         times = _times([n for n in names if n not in taken], of_day)
         taken |= {c.name for c in times}
@@ -262,6 +266,22 @@ def _speed_without_unit(free: list[str]) -> str:
     plain, (speed,) = _by_form(free), (quantity for quantity in QUANTITIES if quantity.name == "ground_speed_mps")
     names = (alias for alias, unit in speed.aliases.items() if unit == WRITTEN)
     return next((plain[alias] for alias in names if alias in plain), "")
+
+
+_OF_PHONE = re.compile(r"(?:horizontal|vertical|speed|bearing|course|altitude)_accuracy(?:_.*)?")
+"""Accuracies as the location services of Android, iOS and browsers name them, whose altitudes are in metres. Provenance: standard, from
+knowledge of the interfaces."""
+
+
+def _of_phone(altitude: Column | None, names: list[str]) -> Column | None:
+    """An altitude in feet by its name alone beside two accuracies of a phone; its location service has it in metres."""
+    if altitude is None or altitude.unit != "ft" or altitude.unit_stated or not _OF_TRANSPONDER.isdisjoint(map(_parted, names)):
+        return None
+    of_phone = [name for name in names if _OF_PHONE.fullmatch(_parted(name)) or _parted(name) == "accuracy"]
+    if len(of_phone) < _LEAST_NAMES or not any(_parted(name) != "accuracy" for name in of_phone):
+        return None
+    beside = " and ".join(f"“{name}”" for name in of_phone[:_LEAST_NAMES])
+    return replace(altitude, unit="m", because=f"as the names {beside} beside it are those of a phone")
 
 
 def _of_layouts(names: list[str]) -> dict[str, Column]:

@@ -10,6 +10,7 @@ import polars as pl
 from navbound import status
 from navbound.errors import UNSEEN, FormatError
 from navbound.read import own_positions
+from navbound.read.beside.altitude_unit import HIGH_M, LIKE, AltitudeUnit, note
 from navbound.read.beside.further import Further, Speeds
 from navbound.read.beside.no_speed import NoSpeeds
 from navbound.read.beside.speed_unit import SpeedUnit
@@ -43,9 +44,6 @@ _AHEAD_NS = 1_000_000_000
 FIELDS, OPTIONAL, DATED, REQUIRED, REPEATED, LEVELS, COMPARED, SPEEDS = range(0, 800_000, 100_000)
 """Where a reason stands among the others of its file; the number of the column is added to that of an optional one."""
 
-
-_HIGH_M, _LIKE = 300.0, 0.1
-"""Height from which geoid and pressure hardly change a ratio [m], and how much they may [1]. Provenance: ours."""
 
 _LEAST_EPU_M = 1.0
 """A smaller radius that holds 95 % is one of a phase solution in metres, or one in nautical miles. Provenance: ours. [m]"""
@@ -105,6 +103,9 @@ class Values:
         self._n_dated = self._n_undated = 0
         self._n_heights = self._n_feet = self._n_metres = 0
         self._transponder, self._least_epu_m = is_transponder(mapping), math.inf
+        altitude = mapping.columns.get("altitude_m")
+        of_name = altitude is not None and altitude.unit == "ft" and not altitude.unit_stated and not self._transponder
+        self._altitude = AltitudeUnit(mapping.columns) if of_name else None
 
     def take(self, frame: pl.DataFrame) -> pl.DataFrame:
         """Columns in SI of some rows, with their times as they are written and the reasons against them.
@@ -257,20 +258,26 @@ class Values:
         return [values.alias(_RAW + name) for name, values in columns.items()]
 
     def _see_heights(self, part: pl.DataFrame) -> None:
-        """Count heights that are a pressure altitude times feet in a metre, or the other way round."""
+        """Count heights that are a pressure altitude times feet in a metre, or the other way round; keep what decides a unit."""
+        if self._altitude is not None:
+            self._altitude.see(part)
         if not {"est_h_m", "altitude_m"} <= set(part.columns):
             return
-        high = part.filter(pl.min_horizontal(pl.col("est_h_m").abs(), pl.col("altitude_m").abs()) > _HIGH_M)
+        high = part.filter(pl.min_horizontal(pl.col("est_h_m").abs(), pl.col("altitude_m").abs()) > HIGH_M)
         ratio = pl.col("est_h_m") / pl.col("altitude_m")
         feet = 1.0 / UNITS["m"]["ft"]
         self._n_heights += high.height
-        self._n_feet += high.filter((ratio / feet - 1.0).abs() <= _LIKE).height
-        self._n_metres += high.filter((ratio * feet - 1.0).abs() <= _LIKE).height
+        self._n_feet += high.filter((ratio / feet - 1.0).abs() <= LIKE).height
+        self._n_metres += high.filter((ratio * feet - 1.0).abs() <= LIKE).height
 
     def _units_of_names(self) -> None:
         """Units that are those of a name and that nobody states: a height of ADS-B is in feet, an uncertainty of a flight display in NM."""
         columns = self._mapping.columns
-        for name in ("est_h_m", "altitude_m"):
+        altitude = columns.get("altitude_m")
+        decided = "" if altitude is None else altitude.because or (self._altitude.words if self._altitude is not None else "")
+        if altitude is not None and decided:
+            self.notes.append(note(self._path, altitude, decided))
+        for name in ("est_h_m",) if decided else ("est_h_m", "altitude_m"):
             column = columns.get(name)
             if column is not None and column.unit == "ft" and not column.unit_stated and not self._transponder:
                 how = declare(f"{name}={column.name}:m")
@@ -289,6 +296,9 @@ class Values:
 
     def _look_like_feet(self) -> None:
         columns = self._mapping.columns
+        if self._altitude is not None and self._altitude.words:
+            # They were counted as they were read, in feet.
+            return
         for n, name, other in ((self._n_feet, "est_h_m", "altitude_m"), (self._n_metres, "altitude_m", "est_h_m")):
             if 2 * n > self._n_heights:
                 of, beside = columns[name], columns[other]
@@ -345,10 +355,11 @@ class Values:
         self.notes += self._callsigns.words(name)
         self.notes += [f"{name}: {words_of_ground(column, n)}" for column, n in self._n_ground.items() if n]
         self._look_like_radians()
+        self._unit = self._understood(self._mapping.times, self._facts)
+        self._understand_altitude()
         self._look_like_feet()
         self._units_of_names()
         self.position_doubts += self._further.doubts()
-        self._unit = self._understood(self._mapping.times, self._facts)
         if self._dated is not None:
             try:
                 self._unit_dated = self._understood([self._dated], self._facts_dated)
@@ -363,6 +374,12 @@ class Values:
             self.notes.append(f"{name}: columns not used: {_few(unused)}")
         # The numbers of all rows are needed no more.
         self._facts, self._facts_dated = [], []
+
+    def _understand_altitude(self) -> None:
+        if self._altitude is None or (head := self._altitude.head()).is_empty():
+            return
+        time, _ = converted(_written(head), self._mapping.times, self._unit)
+        self._altitude.understand(head.with_columns(time.alias("time_ns"), self._track(head)))
 
     def _understand_speed(self) -> None:
         if self._speed is None or (head := self._speed.head()).is_empty():
@@ -402,6 +419,8 @@ class Values:
             pl.when(pl.col(_BAD).is_null()).then(_text(written, timeless.is_not_null())).otherwise(pl.col(_EXAMPLE)).alias(_EXAMPLE),
         )
         self.position_doubts += self._further.against(out["time_ns"], raw)
+        if self._altitude is not None and "altitude_m" in out.columns:
+            out = self._altitude.made(out)
         out = self._positions_dated(out, raw).drop(pl.selectors.starts_with(_RAW))
         if _AGE in out.columns:
             valid_ns = pl.col("time_ns") - (pl.col(_AGE) * 1e9).round().cast(pl.Int64)
@@ -472,6 +491,8 @@ class Values:
     def described(self) -> dict[str, str]:
         """Quantity to the column that it was read from and its unit."""
         columns = {c.quantity: f"{c.name}:{c.unit}" for c in self._mapping.columns.values()}
+        if self._altitude is not None and self._altitude.words:
+            columns["altitude_m"] = f"{self._mapping.columns['altitude_m'].name}:m"
         if self._speed is not None and self._speed.unit:
             columns["ground_speed_mps"] = f"{self._speed.name}:{self._speed.unit}"
         return columns | {"time": ", ".join(units(self._mapping.times, self._unit))}
