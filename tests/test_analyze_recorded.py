@@ -358,7 +358,7 @@ def test_a_fast_step_is_never_silent_and_the_time_of_position_decides_it(tmp_pat
     epochs, doubts = check(read(undated).epochs)
     assert epochs["reason_id"].to_list() == [None] * 3 + ["position_late"] + [None] * 2
     assert epochs["status"][3] == "degraded"
-    assert "1 steps are faster than the aircraft's own speed" in doubts.words
+    assert "1 step is faster than the aircraft's own speed" in doubts.words
     assert check(read(dated).epochs)[0]["reason_id"][3] == "position_jump"
     # A time of position that is later than its row is no such time.
     (wrong := tmp_path / "wrong.csv").write_text(table.with_columns(last_position=pl.col("last_position") + 500).write_csv())

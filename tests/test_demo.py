@@ -40,7 +40,7 @@ def test_the_spoofed_approach_is_replayed_on_the_flight_display(tmp_path: Path) 
     assert process.returncode == NO_VERDICT, trouble
     assert "stopped at byte" in rest + trouble
     assert "spoofing begins" in "".join(sentences)
-    assert "epochs of 1 tracks" in rest
+    assert "epochs of 1 track, " in rest
     origin = origin_of(tmp_path / "session")
     assert (origin["kind"], origin["speed"]) == ("replay", 60.0)
     # The path ahead is that of the flight: from Beijing (40 N, 117 E) to Shanghai (31 N, 121 E), to a degree.

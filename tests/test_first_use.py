@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime as dt
 import gzip
 import json
+import re
 import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,6 +19,7 @@ from navbound.cli import main as cli
 from navbound.read import read
 from navbound.read.checks.statements import other_place
 from navbound.read.pieces.reading import read_pieces
+from navbound.words.plurals import counted
 from test_write import table as solution
 
 if TYPE_CHECKING:
@@ -347,3 +349,30 @@ def test_a_height_or_a_climb_rate_decides_the_unit_of_an_altitude(
     agrees = f"“altitude” states no unit and is read in metres, in which it agrees with “{next(iter(beside))}” at "
     assert any(agrees in each for each in notes) == metres
     assert any("“altitude” states no unit and is read in feet" in each for each in notes) != metres
+
+
+_WRONG_PLURAL = re.compile(r"(?<![\d.,])\b1 (?:[a-z]+ ){0,3}(?:[a-z]+s)\b(?<!has)(?<!is)(?<!was)(?<!ss)(?<!this)")
+
+
+def test_of_one_there_is_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """One epoch, one track, one row that is not used."""
+    plain = _way(2).with_columns(epu_m=pl.lit(20.0), hpl=pl.lit(30.0), hpe=pl.lit(10.0), vpl=pl.lit(30.0), vpe=pl.lit(5.0))
+    table = plain.with_columns(lat=pl.when(pl.col("lat") > 48.0).then(pl.lit("none")).otherwise(pl.col("lat").cast(pl.String)))
+    table[:1].write_csv(tmp_path / "one.csv")
+    _navbound("analyze", tmp_path / "one.csv", "--out", tmp_path / "run")
+    _navbound("show", tmp_path / "run")
+    _navbound("evaluate", tmp_path / "one.csv", "--levels", "APV-I", "--out", tmp_path / "levels")
+    (tmp_path / "one.nmea").write_text(_rmc(1) + _sentence("GPGGA,123000.00,4800.0000,N,01100.0000,E,1,08,1.0,500.0,M,47.0,M,,"))
+    _navbound("live", tmp_path / "one.nmea", "--sigma-m", "5", "--out", tmp_path / "live")
+    words = " ".join(capsys.readouterr().out.split())
+    for each in ("the one epoch is ok and judged", "over 1 track.", "1 epoch of 1 track, "):
+        assert each in words
+    assert not (wrong := [match[0] for match in _WRONG_PLURAL.finditer(words)]), wrong
+
+
+@pytest.mark.parametrize(
+    ("n", "words"), [(0, "0 losses are"), (1, "1 loss is"), (2, "2 losses are"), (1.0, "1 loss is"), (1_234_567, "1234567 losses are")]
+)
+def test_a_noun_agrees_with_its_number(n: float, words: str) -> None:
+    assert counted(n, "loss is", "losses are") == words
+    assert counted(n, "epoch") == f"{n:.0f} epoch" + "s" * (n != 1)

@@ -474,7 +474,7 @@ def test_a_pipe_with_a_name_is_a_source(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "navbound", "live", str(pipe), "--format", "json", "--out", str(tmp_path / "o")]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 0, done.stderr
-    assert "3 epochs of 1 tracks" in done.stdout
+    assert "3 epochs of 1 track," in done.stdout
     assert subprocess.run([*command[:4], str(pipe)], capture_output=True, text=True, timeout=120, check=False).returncode == 2
 
 

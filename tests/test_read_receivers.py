@@ -208,7 +208,7 @@ def test_positions_that_nothing_dates_are_refused(tmp_path: Path) -> None:
         read(path)
     dated = b"$GPRMC,000000.00,A,4715.0,N,00600.0,E,0.0,,311223,,,A*00\r\n"
     path.write_bytes(dated + path.read_bytes())
-    with pytest.raises(FormatError, match=r"1 sentences are damaged.*a wrong checksum refuses one"):
+    with pytest.raises(FormatError, match=r"1 sentence is damaged.*a wrong checksum refuses one"):
         read(path)
     # What the sentence advises works.
     path.write_bytes(sentence("GPZDA,000000.00,31,12,2023,00,00") + path.read_bytes().removeprefix(dated))

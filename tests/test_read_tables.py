@@ -246,7 +246,7 @@ def test_a_sixty_first_second_where_none_was_is_no_time(tmp_path: Path) -> None:
 def test_rows_out_of_order_are_put_in_order_and_reported(tmp_path: Path) -> None:
     reading = read(write(tmp_path, table(ROWS[1], ROWS[0], *ROWS[2:])))
     assert same(reading, read(write(tmp_path, table(*ROWS), "sorted.csv")))
-    assert any("1 rows stood after a later one" in note and "line 3" in note for note in reading.notes)
+    assert any("1 row stood after a later one of its track and was put in order" in note and "line 3" in note for note in reading.notes)
 
 
 def test_more_than_a_tenth_of_bad_rows_refuses_the_file(tmp_path: Path) -> None:

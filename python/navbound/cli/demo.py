@@ -9,6 +9,7 @@ import typer
 
 import navbound
 from navbound.cli.parts import Bar, command_line, out_console
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from navbound.run.directory import Run
@@ -92,7 +93,7 @@ def _print_coverage(run: Run) -> None:
     """Whether the bounds contained the errors, and with which certainty."""
     verdict = run.summary.verdict
     inside = "not known" if verdict.share_inside is None else f"{100 * verdict.share_inside:.2f} %"
-    judged = f"{verdict.n_judged} judged epochs of {verdict.n_epochs}"
+    judged = f"{counted(verdict.n_judged, 'judged epoch')} of {verdict.n_epochs}"
     out_console.print(f"  {verdict.requirement}: the 95 % bound is within it at {inside} of {judged}", markup=False, highlight=False)
     for bound in [] if verdict.belief is None else verdict.belief.bounds:
         interval = f"{100 * bound.coverage_low:.1f} to {100 * bound.coverage_high:.1f} % as from {bound.n_effective:.0f} independent ones"

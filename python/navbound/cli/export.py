@@ -9,6 +9,7 @@ import typer
 
 from navbound.cli.parts import out_console
 from navbound.errors import InputError
+from navbound.words.plurals import counted
 
 _ENDINGS = ".geojson, .kml or .pos"
 
@@ -39,9 +40,13 @@ def export_command(
     if file.suffix == ".pos":
         written = write.rtklib(epochs, file)
         out_console.print(
-            f"{written.n_rows} positions written, {written.n_left_out} epochs without one left out: {file}", markup=False, highlight=False
+            f"{counted(written.n_rows, 'position')} written, {counted(written.n_left_out, 'epoch')} without one left out: {file}",
+            markup=False,
+            highlight=False,
         )
         return
     made = write.shapes(epochs, events=run.events, waypoints=run.waypoints, ellipse_every_s=ellipse_every_s)
     (write.geojson if file.suffix == ".geojson" else write.kml)(made, file)
-    out_console.print(f"{len(made)} lines, points and ellipses of {epochs.height} epochs written: {file}", markup=False, highlight=False)
+    out_console.print(
+        f"{len(made)} lines, points and ellipses of {counted(epochs.height, 'epoch')} written: {file}", markup=False, highlight=False
+    )

@@ -166,13 +166,13 @@ def _of_parser(refusal: Any) -> str:
     typed = _typed(parameter.opts)
     if type(refusal).__name__ == "MissingParameter" or typed is None or typed in text:
         return f"{text.removesuffix('.')}: {meant}"
-    what = text.partition(": ")[2] or text
-    allowed = next((f"; expected {number}" for words, number in _NUMBERS.items() if words in what), f": {what}")
+    number = _NUMBERS.get(getattr(getattr(parameter, "type_descriptor", None), "annotation", None))
+    allowed = f": {text.partition(': ')[2] or text}" if number is None else f"; expected {number}"
     return f"{parameter.opts[0]} = {typed} is not accepted{allowed}; it is: {meant}"
 
 
-_NUMBERS = {"valid number": "a number", "valid integer": "a whole number"}
-"""What is allowed, by the words of the parser's library."""
+_NUMBERS: dict[Any, str] = {float: "a number", int: "a whole number"}
+"""What is allowed of an option, by its type."""
 
 
 def _typed(options: list[str]) -> str | None:

@@ -11,6 +11,7 @@ import typer
 from navbound.cli.parts import Json, err_console, out_console
 from navbound.exit_status import of_verdict
 from navbound.units import METRES_PER_NM
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from navbound.records.procedure import ProcedureFlown
@@ -87,7 +88,7 @@ def _print(run: Run) -> None:
         out_console.print(f"  - {assumption}", markup=False, highlight=False)
     rejected = sum(r.count for r in summary.rejected)
     if rejected:
-        out_console.print(f"{rejected} rows or records were not used:", markup=False)
+        out_console.print(f"{counted(rejected, 'row or record was', 'rows or records were')} not used:", markup=False)
         for r in summary.rejected:
             where = "" if r.first_line is None else f", first in line {r.first_line}: {r.example}"
             out_console.print(f"  {r.count} x {r.reason} ({Path(r.file).name}{where})", markup=False, highlight=False)
@@ -95,7 +96,8 @@ def _print(run: Run) -> None:
         cautions, warnings = (sum(getattr(t, n) for t in summary.tracks) for n in ("n_cautions", "n_warnings"))
         unavailable = sum(t.n_unavailable for t in summary.tracks)
         out_console.print(
-            f"Alerts: {cautions} cautions, {warnings} warnings, {unavailable} losses of monitoring, over {len(summary.tracks)} tracks."
+            f"Alerts: {counted(cautions, 'caution')}, {counted(warnings, 'warning')}, "
+            f"{counted(unavailable, 'loss of monitoring', 'losses of monitoring')}, over {counted(len(summary.tracks), 'track')}."
         )
         for fault in summary.faults[:LISTED_FAULTS]:
             out_console.print(f"{summary.name_of(fault.track)}, {fault.kind}: {fault.words}", markup=False, highlight=False)

@@ -10,6 +10,7 @@ import navbound
 from navbound.cli.lists import WIDE
 from navbound.cli.parts import Json, err_console, out_console
 from navbound.exit_status import OUR_BUG
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -47,7 +48,9 @@ def verify_command(json: Json = False) -> None:
         )
     else:
         out_console.print(_verified(outcomes))
-        out_console.print(f"{sum(o.checked for o in outcomes)} cases of {len(outcomes)} files, {len(failures)} failures.")
+        out_console.print(
+            f"{counted(sum(o.checked for o in outcomes), 'case')} of {counted(len(outcomes), 'file')}, {counted(len(failures), 'failure')}."
+        )
         for text in failures[:20]:
             err_console.print(text, markup=False)
     if failures:

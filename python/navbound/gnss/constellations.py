@@ -15,6 +15,7 @@ from navbound.storage import packed
 from navbound.table.arguments import checked, checked_fields
 from navbound.table.arrays import flatten
 from navbound.time import utc_text
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -182,12 +183,14 @@ def _almanac_notes(name: str, satellites: Sequence[str], unhealthy: Sequence[str
     absent = sorted({f"G{number:02d}" for number in range(1, _GPS_NUMBERS + 1)} - {*satellites, *other_time})
     lacks = f" without {', '.join(absent)}" if absent else ""
     few = f"; fewer than the {_GPS_SLOTS} slots of GPS, so the file is cut or is not a whole almanac" if n < _GPS_SLOTS else ""
-    notes = [f"{name}: {n} satellites{lacks}{few}."]
+    notes = [f"{name}: {counted(n, 'satellite')}{lacks}{few}."]
     if unhealthy:
-        notes.append(f"{name}: {', '.join(unhealthy)} {'is' if len(unhealthy) == 1 else 'are'} unhealthy and left out.")
+        notes.append(f"{name}: {', '.join(unhealthy)} {agreeing(len(unhealthy), 'is', 'are')} unhealthy and left out.")
     if other_time:
         reason = "of another week or time than most, by more than half a week"
-        notes.append(f"{name}: {len(other_time)} satellites are {reason}, and left out: {', '.join(other_time)}.")
+        notes.append(
+            f"{name}: {counted(len(other_time), 'satellite is', 'satellites are')} {reason}, and left out: {', '.join(other_time)}."
+        )
     return notes
 
 
@@ -259,7 +262,7 @@ def _refused_words(name: str, content: bytes, refused: Sequence[tuple[str, int, 
             of.add(begun)
     without = ", ".join(sorted(of - known))
     alone = f"; {without} left out, without any other" if without else ""
-    n = "1 record" if len(refused) == 1 else f"{len(refused)} records"
+    n = counted(len(refused), "record")
     return [f"{name}: {n} cannot be read (the first in line {refused[0][1]}: {refused[0][3]}){alone}."]
 
 

@@ -14,6 +14,7 @@ from navbound.errors import InputError
 from navbound.gnss.constellations import CONSTELLATIONS, Orbits
 from navbound.storage import packed
 from navbound.table.arguments import checked
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -92,7 +93,7 @@ class Observations:
             It has none.
         """
         if not self.n_epochs:
-            refused = f", {self.n_refused} records refused" if self.n_refused else ""
+            refused = f", {counted(self.n_refused, 'record')} refused" if self.n_refused else ""
             raise InputError("observations", f"{self.path.name}: no epoch{refused}", domain="measurements of at least one epoch")
 
     @checked

@@ -10,6 +10,7 @@ import numpy as np
 
 from navbound.evaluation import effective_size
 from navbound.gnss.constellations import CONSTELLATIONS
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -82,9 +83,9 @@ class Fit:
         systems = ", ".join(f"{name} {ratio:.2f}" for name, ratio in self.ratio_of_system.items())
         words = [
             f"Squared residuals are {self.ratio:.2f} times what the error model states ({self.ratio_low:.2f} to {self.ratio_high:.2f} from "
-            f"{self.n_effective:.0f} independent epochs; by constellation {systems}).",
-            f"A fault was detected at {self.n_detected} of {self.n_epochs} epochs, {self.n_events} separate "
-            f"{'event' if self.n_events == 1 else 'events'}: "
+            f"{counted(round(self.n_effective), 'independent epoch')}; by constellation {systems}).",
+            f"A fault was detected at {self.n_detected} of {counted(self.n_epochs, 'epoch')}, "
+            f"{counted(self.n_events, 'separate event')}: "
             f"{self.p_detected_low:.2g} to {self.p_detected_high:.2g} per independent epoch; the allocation allows "
             f"{self.p_false_alert:.2g} without a fault.",
         ]

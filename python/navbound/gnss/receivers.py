@@ -20,6 +20,7 @@ from navbound.gnss.signal_choice import smaller_covariance
 from navbound.table.arguments import checked
 from navbound.table.arrays import flatten
 from navbound.table.columns import HEARD
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -267,8 +268,12 @@ def solve(
 def compared_words(compared: tuple[int, int], n_epochs: int) -> str:
     """At how many epochs codes were compared with their phases: at the others nothing shows that all of them are led off together."""
     n, n_dropped = compared
-    dropped = f"; hardly any phase went on {n_dropped} times during a lead, and what it was before is not seen" if n_dropped else ""
-    return f"codes compared with carrier phases at {n} of {n_epochs} epochs; at the others a lead of all codes is not seen{dropped}"
+    dropped = (
+        f"; hardly any phase went on {counted(n_dropped, 'time')} during a lead, and what it was before is not seen" if n_dropped else ""
+    )
+    return (
+        f"codes compared with carrier phases at {n} of {counted(n_epochs, 'epoch')}; at the others a lead of all codes is not seen{dropped}"
+    )
 
 
 def _ionosphere_words(name: str, activity_sfu: float) -> str:

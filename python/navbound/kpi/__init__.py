@@ -23,6 +23,7 @@ from navbound.kpi.tables import FLOATS, Table, codes_of, frame_of, period_of
 from navbound.records.performance import Level, Performance, StanfordBins, StanfordCounts
 from navbound.table.arguments import checked
 from navbound.table.arrays import flatten
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -368,7 +369,8 @@ class Campaign:
         notes = self._counts.words()
         if self._n_shared:
             notes.append(
-                f"{self._n_shared} rows share an epoch of the grid, one every {self.period_s:g} s, with another: of each epoch the "
+                f"{counted(self._n_shared, 'row shares', 'rows share')} an epoch of the grid, one every {self.period_s:g} s, with "
+                "another: of each epoch the "
                 "worst row counts (an error beyond the limits or above the level first, then one without a level, then the largest ratio)."
             )
         if self.period_s > self.window_s:

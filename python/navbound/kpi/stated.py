@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from navbound.words.plurals import counted
+
 if TYPE_CHECKING:
     import polars as pl
     from numpy.typing import NDArray
@@ -37,9 +39,12 @@ class Counts:
         """A sentence each."""
         words = []
         if self.n_bad_levels:
-            words.append(f"{self.n_bad_levels} rows hold a protection level that is not positive and finite; it counts as none.")
+            words.append(
+                f"{counted(self.n_bad_levels, 'row holds', 'rows hold')} a protection level that is not positive and finite; it "
+                "counts as none."
+            )
         if self.n_degraded:
-            rows = "1 row is degraded and states" if self.n_degraded == 1 else f"{self.n_degraded} rows are degraded and state"
+            rows = counted(self.n_degraded, "row is degraded and states", "rows are degraded and state")
             words.append(f"{rows} a protection level that its error exceeds: the level counts, and so do the errors above it.")
         return words
 

@@ -14,6 +14,7 @@ from navbound.errors import InputError
 from navbound.kpi import records
 from navbound.records.performance import Level, ListedSubset, Performance, StanfordBins, StanfordCounts, Subsets
 from navbound.table.arguments import checked, checked_fields
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -151,7 +152,8 @@ def with_subsets(result: Performance, diagram: StanfordEsa) -> Performance:
     notes = []
     if diagram.subsets.n_cut:
         notes.append(
-            f"Stanford-ESA: {diagram.subsets.n_cut} epochs have so many satellites that only subsets that leave out a few were looked at, "
+            f"Stanford-ESA: {counted(diagram.subsets.n_cut, 'epoch has', 'epochs have')} so many satellites that only subsets that "
+            "leave out a few were looked at, "
             f"at most 2^{diagram.subsets.max_satellites} an epoch."
         )
     changes = {"stanford": [*result.stanford, *diagram.bins], "subsets": diagram.subsets, "notes": [*result.notes, *notes]}

@@ -13,6 +13,7 @@ from navbound.live import journal
 from navbound.live.course import points
 from navbound.live.session import Origin, Pace, Session, origin_of, stopped
 from navbound.live.settings import load
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -90,7 +91,10 @@ def replay(
     frames, torn = journal.read(_journal(source)), journal.torn(_journal(source))
     if torn:
         name = _journal(source).name
-        say(f"{name}: {torn} bytes at its end are no whole frame and are not judged: it was cut, or its writer was killed or still writes")
+        say(
+            f"{name}: {counted(torn, 'byte')} at its end {agreeing(torn, 'is', 'are')} no whole frame and "
+            f"{agreeing(torn, 'is', 'are')} not judged: it was cut, or its writer was killed or still writes"
+        )
     selected = settings or settings_of(source)
     origin = Origin("replay", str(source), speed, points(selected, ""), limits)
     session = Session(out, selected, origin=origin, report=report)

@@ -22,6 +22,7 @@ from navbound.live.settings import load
 from navbound.live.sinks.events import Events
 from navbound.live.source import File
 from navbound.live.statements import unread
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -145,7 +146,10 @@ class Session:
             journal.require_pair(out, self._in.content(), self._out.content())
             for written in (self._in, self._out):
                 if written.torn:
-                    say(f"{written.path.name}: {written.torn} bytes of an unfinished frame were cut off")
+                    say(
+                        f"{written.path.name}: {counted(written.torn, 'byte')} of an unfinished frame "
+                        f"{agreeing(written.torn, 'was', 'were')} cut off"
+                    )
             self._events = Events(out, settings, say=say)
             self._lane, position = self._restored()
             self._recover(position)
@@ -263,7 +267,10 @@ class Session:
             raise FormatError(self._out.path, _OTHERWISE)
         self._show(again_shown, replayed=True)
         if at > position:
-            self._say(f"recovered: {at - position} bytes of the journal judged again, {len(again)} outputs were there already")
+            self._say(
+                f"recovered: {counted(at - position, 'byte')} of the journal judged again, "
+                f"{counted(len(again), 'output was', 'outputs were')} there already"
+            )
 
     def finish(self, *, ended: bool = True) -> None:
         """Judge what waits, keep everything, leave the folder; of a source that has more to say nothing is flushed: it goes on there."""

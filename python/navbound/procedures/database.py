@@ -15,6 +15,7 @@ from navbound.procedures.legs import LevelOfService, Procedure, leg
 from navbound.procedures.whole import doubts
 from navbound.table.arguments import checked
 from navbound.units import METRES_PER_NM
+from navbound.words.plurals import counted
 
 LISTED = 12
 """Names that a refusal lists; the file has all."""
@@ -139,7 +140,10 @@ class Database:
                 f"{first.field} {first.reason} ({first.text!r})."
             )
         if self._core.n_unattributed:
-            words.append(f"{self._core.n_unattributed} refused lines name no route: a procedure of this file may lack a leg.")
+            words.append(
+                f"{counted(self._core.n_unattributed, 'refused line names', 'refused lines name')} no route: a procedure of this "
+                "file may lack a leg."
+            )
         return words
 
     def contradictions(self, airport: str | None = None) -> list[Finding]:
@@ -265,7 +269,7 @@ _Route = tuple[str, str, int, list[int], list[tuple[int, int, bool]]]
 
 
 def _missing(n: int) -> str:
-    return f"{n} {'record is' if n == 1 else 'records are'} missing by the record numbers"
+    return f"{counted(n, 'record is', 'records are')} missing by the record numbers"
 
 
 def _entry(row: tuple[str, str, str, int, list[_Route], list[tuple[int, float]]]) -> Entry:

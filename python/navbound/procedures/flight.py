@@ -15,6 +15,7 @@ from navbound.procedures.strays import ASTRAY, JUDGED, follow
 from navbound.table.arguments import checked
 from navbound.table.arrays import flatten
 from navbound.units import METRES_PER_NM
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -141,7 +142,10 @@ class Flight:
         if self.n == 0:
             return "not shown: no position on a leg with an RNP"
         if self.n_inside == self.n and self.n_astray:
-            return f"recorded positions within RNP at every position judged, {self.n_astray} positions off the path could not be judged"
+            return (
+                f"recorded positions within RNP at every position judged, {counted(self.n_astray, 'position')} off the path could "
+                "not be judged"
+            )
         if self.n_inside == self.n:
             return "recorded positions within RNP at every position judged"
         twice = "within twice RNP" if self.n_inside_twice == self.n else "not within twice RNP"
@@ -154,7 +158,7 @@ class Flight:
         a = f"Recorded positions: {counts}; {self.verdict}."
         if self.n == 0:
             return [a]
-        c = f"What the data can decide: {self.n} positions are worth {self.n_effective:.1f} independent ones"
+        c = f"What the data can decide: {counted(self.n, 'position is', 'positions are')} worth {self.n_effective:.1f} independent ones"
         if math.isfinite(self.most_exceeding):
             c += f"; without an exceedance they leave open a share outside RNP of up to {self.most_exceeding:.2g} at 95 % confidence"
         return [a, f"{c}. One flight cannot show 1e-5."]

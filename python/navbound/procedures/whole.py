@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from navbound.procedures.legs import STATES
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -119,7 +120,7 @@ def _gaps(entry: Entry, routes: Sequence[int]) -> list[str]:
     words = []
     for k in sorted({*routes, *(k + 1 for k in routes)}):
         for number, n, _ in entry.routes[k].gaps if k < len(entry.routes) else ():
-            words.append(f"{n} {'record is' if n == 1 else 'records are'} missing before line {number}, by the record numbers.")
+            words.append(f"{counted(n, 'record is', 'records are')} missing before line {number}, by the record numbers.")
     return words
 
 

@@ -13,6 +13,7 @@ from navbound.read.runways import Runway, cells, near_cells
 from navbound.records.run import CrossTrack
 from navbound.storage.tables import has_values, pieces
 from navbound.units import METRES_PER_FT, METRES_PER_NM
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -336,11 +337,14 @@ def _lost_words(lost: pl.DataFrame, names: list[str]) -> list[str]:
     if lost.is_empty():
         return []
     shown = [
-        f"{row['track']} to {names[row['runway']]} ({row['failed']}: {row['n']} points, {row['span'] / METRES_PER_NM:.1f} NM)"
+        f"{row['track']} to {names[row['runway']]} ({row['failed']}: {counted(row['n'], 'point')}, {row['span'] / METRES_PER_NM:.1f} NM)"
         for row in lost.head(_PASSES_NAMED).iter_rows(named=True)
     ]
     more = f"; and {lost.height - _PASSES_NAMED} more" if lost.height > _PASSES_NAMED else ""
-    return [f"{lost.height} passes along a runway's centreline are not judged as approaches: {'; '.join(shown)}{more}."]
+    return [
+        f"{counted(lost.height, 'pass', 'passes')} along a runway's centreline {agreeing(lost.height, 'is', 'are')} not judged as "
+        f"approaches: {'; '.join(shown)}{more}."
+    ]
 
 
 def _elsewhere_words(elsewhere: list[str], n_tracks: int) -> list[str]:
@@ -349,7 +353,8 @@ def _elsewhere_words(elsewhere: list[str], n_tracks: int) -> list[str]:
         return []
     more = f" and {len(elsewhere) - _PASSES_NAMED} more" if len(elsewhere) > _PASSES_NAMED else ""
     return [
-        f"{len(elsewhere)} of {n_tracks} tracks have no approach to these runways and are not judged: "
+        f"{len(elsewhere)} of {counted(n_tracks, 'track')} {agreeing(len(elsewhere), 'has', 'have')} no approach to these runways and "
+        f"{agreeing(len(elsewhere), 'is', 'are')} not judged: "
         f"{', '.join(elsewhere[:_PASSES_NAMED])}{more}. Where they flew is no part of the verdict."
     ]
 

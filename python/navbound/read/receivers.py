@@ -113,7 +113,10 @@ def _notes(source: Source, fields: dict[str, Any]) -> list[str]:
     notes = [_NOTES[note].format(*numbers) for note, numbers in fields["notes"]]
     if fields["n_outside"]:
         passed_over = f"{fields['n_outside']} of {len(source.content)} bytes"
-        notes.append(f"{passed_over} belong to no message that is read (text, other protocols, or damage)")
+        notes.append(
+            f"{passed_over} {agreeing(fields['n_outside'], 'belongs', 'belong')} to no message that is read (text, other protocols, "
+            "or damage)"
+        )
     return [f"{source.path.name}: {note}" for note in notes]
 
 
@@ -144,9 +147,14 @@ def _solvable(source: Source) -> str:
 
 def _undated(n_positions: int, n_damaged: int) -> str:
     """GGA holds a time of day only: what is lacking, and what to do."""
-    damaged = f" ({n_damaged} sentences are damaged, perhaps those with the date: a wrong checksum refuses one)" if n_damaged else ""
+    damaged = (
+        f" ({counted(n_damaged, 'sentence is', 'sentences are')} damaged, perhaps those with the date: a wrong checksum refuses one)"
+        if n_damaged
+        else ""
+    )
     return (
-        f"{n_positions} GGA sentences hold a time of day and no date, and no sound RMC or ZDA sentence gives one{damaged}; log RMC or ZDA "
+        f"{counted(n_positions, 'GGA sentence holds', 'GGA sentences hold')} a time of day and no date, and no sound RMC or ZDA "
+        f"sentence gives one{damaged}; log RMC or ZDA "
         "beside GGA, take out or mend damaged sentences and add one ZDA sentence of the day at the beginning "
         "($GPZDA,hhmmss,dd,mm,yyyy,00,00*checksum), or convert the log to a table with a time"
     )

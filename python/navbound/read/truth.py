@@ -19,6 +19,7 @@ from navbound.read.tables.columns import NO_COLUMN
 from navbound.read.tables.epochs import read_beside
 from navbound.records.truth import TruthDoubts
 from navbound.time import utc_text
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -309,7 +310,8 @@ class Comparison:
             because = f"no epoch of {Path(self._path).name} is within {self._tolerance_s:g} s of one: {spans}"
             raise ConflictError("truth", because=because)
         words = (
-            f"Truth: {self._path}, joined to the nearest epoch in time; {self._n_known} of {self._n} epochs have one, at most "
+            f"Truth: {self._path}, joined to the nearest epoch in time; {self._n_known} of {counted(self._n, 'epoch')} "
+            f"{agreeing(self._n_known, 'has', 'have')} one, at most "
             f"{self._largest_ns * 1e-6:g} ms apart (allowed {self._tolerance_s * 1e3:g} ms)."
         )
         return _sentences(words, self.doubts.words)

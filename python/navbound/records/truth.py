@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from navbound.time import utc_text
+from navbound.words.plurals import counted
 
 _NAMED = 3
 """Jumps whose times are named. [1]"""
@@ -55,24 +56,29 @@ class TruthDoubts:
         sentences = []
         if self.n_jumping:
             times = ", ".join(f"{utc_text(time_ns)} UTC" for time_ns in self.jumps_ns[:_NAMED])
-            more = f" and {len(self.jumps_ns) - _NAMED} more times" if len(self.jumps_ns) > _NAMED else ""
+            more = f" and {counted(len(self.jumps_ns) - _NAMED, 'more time')}" if len(self.jumps_ns) > _NAMED else ""
             sentences.append(
-                f"Truth is not believable at {self.n_jumping} epochs and is not used there: it jumps at {times}{more}, to places "
+                f"Truth is not believable at {counted(self.n_jumping, 'epoch')} and is not used there: it jumps at {times}{more}, to "
+                "places "
                 "that cannot have been reached from those before. Only a part that agrees with itself over three quarters of a track is "
                 "a reference."
             )
         if self.n_standing:
             sentences.append(
-                f"Truth is not believable at {self.n_standing} epochs and is not used there: it stands still while the positions travel "
+                f"Truth is not believable at {counted(self.n_standing, 'epoch')} and is not used there: it stands still while the "
+                "positions travel "
                 f"up to {self.travelled_m:.0f} m on a steady course, by more than their bounds allow. It is the truth of another receiver, "
                 "the positions are wrong, or its columns are in other units: what is declared of a column holds in both files unless "
                 "it is declared of the truth alone (truth_lat_rad, truth_lon_rad)."
             )
         if self.n_invalid:
-            sentences.append(f"Truth is not used at {self.n_invalid} epochs, at which its own recording states that it is not valid.")
+            sentences.append(
+                f"Truth is not used at {counted(self.n_invalid, 'epoch')}, at which its own recording states that it is not valid."
+            )
         if self.n_imprecise:
             sentences.append(
-                f"Truth is not used at {self.n_imprecise} epochs, at which its own standard deviation is no smaller than that of the "
+                f"Truth is not used at {counted(self.n_imprecise, 'epoch')}, at which its own standard deviation is no smaller than "
+                "that of the "
                 "position."
             )
         return " ".join(sentences)

@@ -18,6 +18,7 @@ from navbound.rnp.usual import breaks
 from navbound.storage.tables import pieces
 from navbound.table import lookup
 from navbound.time import GPS_EPOCH_UNIX_NS, utc_offset_s
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -187,7 +188,7 @@ def _track(epochs: Table, track: TrackSummary, worst: Worst | None, columns: lis
         n_before = int((kept["time_ns"] < at).sum())
         kept = kept.slice(max(0, min(n_before, kept.height) - MOST_ROWS // 2), MOST_ROWS)
     assert kept is not None
-    words = f"The charts show {kept.height} of the {track.n_epochs} epochs of track {track.label}, those around its worst."
+    words = f"The charts show {kept.height} of the {counted(track.n_epochs, 'epoch')} of track {track.label}, those around its worst."
     return kept, [words]
 
 

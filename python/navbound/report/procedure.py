@@ -11,6 +11,7 @@ from jinja2 import Environment, StrictUndefined
 from navbound.procedures.legs import ORIGINS, STATES
 from navbound.procedures.picture import altitude_words, picture
 from navbound.units import METRES_PER_FT, METRES_PER_NM
+from navbound.words.plurals import agreeing
 
 if TYPE_CHECKING:
     from navbound.procedures import VerticalPath
@@ -89,7 +90,8 @@ def notes(procedure: Procedure, findings: list[Finding], heights: Heights) -> li
     n = procedure.n_without_rnp
     if n:
         warnings = [
-            f"{n} of {sum(x.has_path for x in procedure.legs)} legs with a path have no RNP and are not judged; "
+            f"{n} of {sum(x.has_path for x in procedure.legs)} legs with a path {agreeing(n, 'has', 'have')} no RNP and "
+            f"{agreeing(n, 'is', 'are')} not judged; "
             "select a line or allow defaults."
         ]
     differing = [x for x in procedure.legs if x.rnp_differs]

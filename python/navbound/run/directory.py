@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from navbound.errors import FormatError
 from navbound.storage import folders
 from navbound.table import lookup
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
@@ -52,7 +53,7 @@ class Run:
         """What it is, in a line."""
         verdict = self.summary.verdict
         where = "" if self.path is None else f", in {self.path}"
-        return f"<Run: {self.summary.title}; {verdict.id.replace('_', ' ')}; {self.table.height} epochs{where}>"
+        return f"<Run: {self.summary.title}; {verdict.id.replace('_', ' ')}; {counted(self.table.height, 'epoch')}{where}>"
 
     def _repr_html_(self) -> str:
         """For notebooks: the verdict, and where the report is."""

@@ -16,6 +16,7 @@ from navbound.records.material import LEFT_OUT
 from navbound.records.run import Rejection, Waypoint
 from navbound.run.pieces import NoWay, OnApproach, OnRoute, without_path
 from navbound.units import METRES_PER_NM
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -111,7 +112,9 @@ def _refuse_beyond(route: Route, n_followed: int, n_beyond: int, rejected: list[
         )
     if n_beyond:
         reason = "before the start or beyond the end of the route"
-        rejected.append(Rejection(file=route.source.path, reason=reason, count=n_beyond, first_line=None, example=f"{n_beyond} epochs"))
+        rejected.append(
+            Rejection(file=route.source.path, reason=reason, count=n_beyond, first_line=None, example=counted(n_beyond, "epoch"))
+        )
 
 
 def _route_path(epochs: Table, route: Route, cross_track: CrossTrack) -> OnPath:
@@ -123,7 +126,7 @@ def _approach_path(epochs: Table, approaches: Landings, gates: Gates, n_recorded
     n, runways = len(approaches.tracks), ", ".join(r.name for r in approaches.runways)
     words = [
         f"Path: the centreline through the runway ends of the shipped table (OurAirports), {gates.before_max_m / METRES_PER_NM:g} to "
-        f"{gates.before_min_m / METRES_PER_NM:g} NM before the landing threshold; {n} approaches.",
+        f"{gates.before_min_m / METRES_PER_NM:g} NM before the landing threshold; {counted(n, 'approach', 'approaches')}.",
         f"Judged are all epochs from the first to the last point of an approach, {epochs.height} of {n_recorded} recorded, and where an "
         "aircraft leaves the centreline in the last mile those after it while it comes nearer to the threshold; "
         "what came before the first point is not. The path is the extended centreline, not a coded procedure: its own error counts as "
@@ -131,7 +134,10 @@ def _approach_path(epochs: Table, approaches: Landings, gates: Gates, n_recorded
     ]
     waypoints = [Waypoint(name=r.name, lat_rad=r.lat_rad, lon_rad=r.lon_rad, kind="runway") for r in approaches.runways]
     cross, tracks = approaches.cross_track, approaches.tracks
-    heading = f"{n} recorded approaches to {runways if len(approaches.runways) <= 4 else f'{len(approaches.runways)} runways'}"
+    heading = (
+        f"{counted(n, 'recorded approach', 'recorded approaches')} to "
+        f"{runways if len(approaches.runways) <= 4 else f'{len(approaches.runways)} runways'}"
+    )
     words += [r.doubt for r in approaches.runways if r.doubt is not None]
     notes = words + approaches.notes
     return OnPath(

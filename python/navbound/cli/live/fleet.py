@@ -24,6 +24,7 @@ from navbound.cli.live.parts import (
 from navbound.cli.parts import out_console, stop_requested
 from navbound.errors import InputError
 from navbound.exit_status import NO_VERDICT, UNREADABLE
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -234,7 +235,7 @@ def _feed(source: str, settings: Settings, fed: _Fed, *, stop: Callable[[], bool
         feeder = Feeder(spool, settings, target=None if spool is target else target, say=say)
         pace = paced(fed.speed, time_of(settings.format), looking) if fed.speed else lambda _: None
         feeder.run(opened, stop=looking, pace=pace)
-        say(f"{feeder.n_bytes} bytes of {source} are in {target.name}")
+        say(f"{counted(feeder.n_bytes, 'byte')} of {source} {agreeing(feeder.n_bytes, 'is', 'are')} in {target.name}")
 
 
 class _Screen:
@@ -290,8 +291,8 @@ def _say_refused(transport: Transport) -> None:
 
 
 def _sum(n_epochs: int | None, n_transitions: int, name: str, *, json: bool) -> None:
-    epochs = "" if n_epochs is None else f"{n_epochs} epochs, "
-    sentence = f"{epochs}{n_transitions} transitions; fleet in {name}"
+    epochs = "" if n_epochs is None else f"{counted(n_epochs, 'epoch')}, "
+    sentence = f"{epochs}{counted(n_transitions, 'transition')}; fleet in {name}"
     if json:
         say(sentence)
     else:

@@ -17,6 +17,7 @@ from navbound.cli.parts import out_console, stop_requested
 from navbound.delays import RAISE_DELAY_S, TIME_TO_ALERT_S
 from navbound.errors import ConflictError, FormatError, InputError
 from navbound.exit_status import NO_VERDICT, OUR_BUG
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -361,7 +362,11 @@ def send(
     if target is not None:
         sender = Webhook(folder, target, say=say)
         sender.run(stop=stop_requested())
-        out_console.print(f"{sender.n_sent} transitions taken by {target.name}, {sender.n_waiting} wait.", highlight=False)
+        out_console.print(
+            f"{counted(sender.n_sent, 'transition')} taken by {target.name}, {sender.n_waiting} "
+            f"{agreeing(sender.n_waiting, 'waits', 'wait')}.",
+            highlight=False,
+        )
         if sender.n_waiting:
             raise typer.Exit(NO_VERDICT)
 
@@ -391,7 +396,9 @@ def compare(a: Annotated[Path, typer.Argument(help="Folder of a session.")], b: 
     result = live.compare(a, b)
     where = "" if result.first is None else f", the first at {result.first}"
     out_console.print(
-        f"{result.n_epochs} epochs and {result.n_transitions} transitions compared: {result.n_differing} differ{where}.", highlight=False
+        f"{counted(result.n_epochs, 'epoch')} and {counted(result.n_transitions, 'transition')} compared: {result.n_differing} "
+        f"{agreeing(result.n_differing, 'differs', 'differ')}{where}.",
+        highlight=False,
     )
     if result.apart is not None:
         raise FormatError(b, f"is no other judgement of the session in {a}: {result.apart}")
@@ -424,7 +431,7 @@ def _ended(session: Session, settings: Settings, *, json: bool) -> None:
     )
     repeated = sum(counters.get(name, 0) for name in ("n_waiting_duplicate", "n_duplicate"))
     sentence = (
-        f"{session.n_epochs} epochs of {session.n_tracks} tracks, {session.n_transitions} transitions; "
+        f"{counted(session.n_epochs, 'epoch')} of {counted(session.n_tracks, 'track')}, {counted(session.n_transitions, 'transition')}; "
         f"refused: {refused or 'nothing'}; positions not used: {unusable or 'none'}; repeated times: {repeated:g}; "
         f"session in {session.folder}"
     )
@@ -435,7 +442,7 @@ def _ended(session: Session, settings: Settings, *, json: bool) -> None:
     if settings.assumed:
         sentence += f"; {settings.assumed}"
     if degraded := counters["n_degraded"]:
-        sentence += f"; {degraded:g} epochs are degraded"
+        sentence += f"; {counted(degraded, 'epoch is', 'epochs are')} degraded"
     if keys := session.passed_over():
         sentence += f"; {unread(keys)}"
     if session.unfinished:

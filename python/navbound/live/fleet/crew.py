@@ -11,6 +11,7 @@ from navbound.errors import FormatError, NavboundError
 from navbound.live.fleet.transport import connect
 from navbound.live.fleet.worker import Worker
 from navbound.scale.spawned import CONTEXT, deaf_to_interrupts
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -131,7 +132,7 @@ class Crew:
             if failed := next((member for member in self.members if member.n_ends > _FINISH_TRIES), None):
                 raise FormatError(
                     self._name,
-                    f"not judged to its end: worker {failed.number} ended {failed.n_ends} times"
+                    f"not judged to its end: worker {failed.number} ended {counted(failed.n_ends, 'time')}"
                     f"{f' ({failed.last})' if failed.last else ''}; when the cause is gone, navbound live work {self._name} goes on",
                 )
             if stop():

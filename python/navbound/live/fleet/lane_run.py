@@ -18,6 +18,7 @@ from navbound.live import journal
 from navbound.live.fleet.transport import UnreachableError
 from navbound.live.session import now_ns
 from navbound.live.statements import unread
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -123,7 +124,10 @@ class LaneRun:
             raise FormatError(
                 self._transport.name, f"lane {self.lane}: judged again it gives other outputs than went out; please report it"
             )
-        self._say(f"lane {self.lane}: recovered, {self.replayed} bytes judged again, {len(again)} outputs were out already")
+        self._say(
+            f"lane {self.lane}: recovered, {counted(self.replayed, 'byte')} judged again, "
+            f"{counted(len(again), 'output was', 'outputs were')} out already"
+        )
 
     def _wait(self, log: Log, at: int) -> None:
         """Until a log that holds more gives it."""

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from navbound import _core
 from navbound.live import journal
 from navbound.live.sinks import transition
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -66,7 +67,10 @@ class Events:
         text = "".join(transition.line(record) + "\n" for record in [*whole, *others])
         journal.put(self._path, text.encode())
         self._n_written = len(whole) + len(others)
-        self._say(f"{self._path.name}: {len(missing)} of {len(rows)} transitions were missing and are restored from {journal.OUT}")
+        self._say(
+            f"{self._path.name}: {len(missing)} of {counted(len(rows), 'transition')} {agreeing(len(missing), 'was', 'were')} "
+            f"missing and {agreeing(len(missing), 'is', 'are')} restored from {journal.OUT}"
+        )
 
 
 def _name(row: _core._TransitionRow) -> tuple[str, str]:

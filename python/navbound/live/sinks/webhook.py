@@ -26,6 +26,7 @@ from navbound.live.session import origin_of
 from navbound.live.settings import load
 from navbound.live.sinks import transition
 from navbound.live.tail import Tail
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -184,7 +185,8 @@ class Webhook:
                 break
         if self._ended and self._skip:
             raise FormatError(
-                self._place, f"is ahead of {journal.OUT} by {self._skip} transitions: it belongs to another session; move it away"
+                self._place,
+                f"is ahead of {journal.OUT} by {counted(self._skip, 'transition')}: it belongs to another session; move it away",
             )
         return self._ended
 
@@ -210,7 +212,7 @@ class Webhook:
                 wait_s = 0.0
             elif not self._refused_for_good:
                 wait_s = min(LONGEST_WAIT_S, 2 * wait_s) if wait_s else FIRST_WAIT_S
-                self._say(f"{len(self._waiting)} transitions wait; again in {wait_s:.0f} s")
+                self._say(f"{counted(len(self._waiting), 'transition waits', 'transitions wait')}; again in {wait_s:.0f} s")
                 _pause(wait_s * (1.0 + 0.1 * random.random()), stop)
 
     def _send(self) -> bool:
@@ -228,7 +230,10 @@ class Webhook:
             return True
         if status == HTTPStatus.GONE:
             self._refused_for_good = True
-            self._say(f"{self._target.name}: status 410, it wants no more; {len(self._waiting)} transitions are not sent")
+            self._say(
+                f"{self._target.name}: status 410, it wants no more; "
+                f"{counted(len(self._waiting), 'transition is', 'transitions are')} not sent"
+            )
             return False
         moved = ", a redirect, which is not followed" if status // 100 == 3 else ""
         self._say(f"{self._target.name}: status {status}{moved}")

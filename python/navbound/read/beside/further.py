@@ -20,6 +20,7 @@ from navbound.read.tables.columns import NO_COLUMN, POSITION, declare
 from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, understand
 from navbound.units import EARTH_RADIUS_M
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from collections.abc import Container, Mapping
@@ -113,7 +114,7 @@ class Further:
         for name, (n, n_far, most_mps) in self._speeds.items():
             if used is not None and n_far > SPEEDS_SHARE * n:
                 velocity = self._mapping.columns.get(name)
-                apart = f"at {n_far} of {n} rows up to {most_mps:.0f} m/s"
+                apart = f"at {n_far} of {counted(n, 'row')} up to {most_mps:.0f} m/s"
                 if velocity is None:
                     words.append(self._doubt("two columns of one speed", (used.name, name), apart, "ground_speed_mps"))
                 else:

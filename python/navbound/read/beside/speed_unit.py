@@ -14,6 +14,7 @@ import polars as pl
 from navbound.read.checks.places import east_north_m
 from navbound.read.quantities import UNITS
 from navbound.read.tables.columns import NO_COLUMN, declare
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -114,13 +115,14 @@ class SpeedUnit:
         """A remark, and why nothing can be shown of the positions."""
         how = declare(f"ground_speed_mps={self.name}:UNIT")
         if self.unit:
-            n = f"{self._n_best} of {self._n} ways of 10 s"
+            n = f"{self._n_best} of {counted(self._n, 'way')} of 10 s"
             what = f"states no unit and is read in {self.unit}, in which it is the speed of the positions on {n}"
             return [f"{path.name}: “{self.name}” {what}; if it is not, {how}"], []
         if not self._n:
             return [], []
         units = ", ".join(_UNITS)
         return [], [
-            f"{path.name}: “{self.name}” states no unit, and is the speed of the positions in none of {units} on most of {self._n} ways "
+            f"{path.name}: “{self.name}” states no unit, and is the speed of the positions in none of {units} on most of "
+            f"{counted(self._n, 'way')} "
             f"of 10 s; {how}, or ground_speed_mps={NO_COLUMN} where it is no speed over the ground; nothing is shown until then"
         ]

@@ -11,6 +11,7 @@ import polars as pl
 
 from navbound.read.checks.places import east_north_m, half_turn_s, wrapped
 from navbound.read.checks.plausible import plausible_rows
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -80,7 +81,7 @@ class Axes:
             return [f"The positions of track {name} move aside of the reported track {_FOR_LONG}" for name in aside[:1]]
         n, n_agree, n_exchanged = (sum(count[name] for name in doubted) for count in (self._n, self._n_agree, self._n_exchanged))
         of = f" of {len(doubted)} tracks, {doubted[0]} the first of them," if len(self._n) > 1 else ""
-        low = f"The positions{of} move in the direction of the reported track (within 20 deg) at {n_agree} of {n} steps only"
+        low = f"The positions{of} move in the direction of the reported track (within 20 deg) at {n_agree} of {counted(n, 'step')} only"
         if n_exchanged > _AGREES * n:
             return [f"{low}, with latitude and longitude exchanged at {n_exchanged}: the two may be exchanged"]
         return [f"{low}: the track or the positions are not what they are read as"]

@@ -13,6 +13,7 @@ from navbound import _core, status
 from navbound.read.checks.statements import STALE_AFTER_S
 from navbound.read.quantities import POSITION_TIME
 from navbound.table.columns import COVARIANCE
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -224,31 +225,46 @@ class Checker:
         limits, n, n_steps, largest, fastest = self._limits, self._n, self._n_steps, self._largest, self._fastest
         twice = f"{self._n_twice} of them another position of the same time, " if self._n_twice else ""
         words = (
-            f"Plausibility: {n[_JUMP] + self._n_twice} position jumps that cannot be flown ({twice}{n[4]} more epochs not settled after "
-            f"them), {n[2]} epochs with a "
-            f"position held for more than {limits.stale_after_s:g} s, {n[1]} with one held shorter; {n_steps} steps of more than 5 km "
+            f"Plausibility: {counted(n[_JUMP] + self._n_twice, 'position jump')} that cannot be flown "
+            f"({twice}{counted(n[4], 'more epoch')} "
+            f"not settled after them), {counted(n[2], 'epoch')} with a "
+            f"position held for more than {limits.stale_after_s:g} s, {n[1]} with one held shorter; {counted(n_steps, 'step')} of "
+            "more than 5 km "
             f"between successive epochs, the largest {largest / 1e3:.1f} km."
         )
         if self._n_fast:
             words += (
-                f" {self._n_fast} steps are faster than the aircraft's own speed in the time between the positions, the fastest "
-                f"{fastest:.0f} m/s; {n[5]} of them need a position that was older than {limits.stale_after_s:g} s and are marked."
+                f" {counted(self._n_fast, 'step is', 'steps are')} faster than the aircraft's own speed in the time between the "
+                "positions, the fastest "
+                f"{fastest:.0f} m/s; {n[5]} of them {agreeing(n[5], 'needs', 'need')} a position that was older than "
+                f"{limits.stale_after_s:g} s and {agreeing(n[5], 'is', 'are')} marked."
             )
         if n[6]:
-            words += f" {n[6]} positions are further on than the speeds reported on the way to them lead."
+            words += f" {counted(n[6], 'position is', 'positions are')} further on than the speeds reported on the way to them lead."
         if self._n_doubted:
-            words += f" {self._n_doubted} reported speeds are beyond what the speeds beside them allow, and were not used."
+            words += (
+                f" {counted(self._n_doubted, 'reported speed is', 'reported speeds are')} beyond what the speeds beside "
+                f"{agreeing(self._n_doubted, 'it allow, and was', 'them allow, and were')} not used."
+            )
         if self._n_dated:
             words += (
-                f" {self._n_dated} of {self._n_rows} rows say when their position was valid; between those, steps are judged by that time."
+                f" {self._n_dated} of {counted(self._n_rows, 'row')} {agreeing(self._n_dated, 'says when its', 'say when their')} "
+                "position was valid; between those, steps are judged by that time."
             )
             if n_old := sum(int(each[1]) for each in self._ages.values()):
-                words += f" {n_old} positions that are older than {limits.fix_latency_s:g} s count as held."
+                words += (
+                    f" {counted(n_old, 'position that is', 'positions that are')} older than {limits.fix_latency_s:g} s "
+                    f"{agreeing(n_old, 'counts', 'count')} as held."
+                )
             if self._oldest_s > 0.0:
                 moved = (
                     f"the aircraft moved up to {self._furthest_m:.0f} m" if self._furthest_m else "nobody knows how far the aircraft moved"
                 )
-                more = f" ({self._n_unknown} state no speed)" if self._furthest_m and self._n_unknown else ""
+                more = (
+                    f" ({self._n_unknown} {agreeing(self._n_unknown, 'states', 'state')} no speed)"
+                    if self._furthest_m and self._n_unknown
+                    else ""
+                )
                 words += (
                     f" The others are up to {self._oldest_s:.2g} s old, in which {moved}{more}: a bound is of the time of the position, a "
                     "truth of the time of the row."
@@ -274,8 +290,10 @@ class Checker:
             return ()
         name, (n_dated, n_old, n_silent) = next(iter(old.items()))
         return (
-            f"{n_old} of {n_dated} rows of track {name} that say when their position was valid say that it is older than "
-            f"{self._limits.fix_latency_s:g} s, and {n_silent} rows say nothing of it: how old those positions are is not known",
+            f"{n_old} of {counted(n_dated, 'row')} of track {name} that {agreeing(n_dated, 'says when its', 'say when their')} position "
+            f"was valid {agreeing(n_old, 'says', 'say')} that it is older than "
+            f"{self._limits.fix_latency_s:g} s, and {counted(n_silent, 'row says', 'rows say')} nothing of it: how old those "
+            "positions are is not known",
         )
 
 

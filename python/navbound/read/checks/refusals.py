@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from navbound.errors import FormatError
 from navbound.read.checks.rejections import MAX_BAD_SHARE
 from navbound.records.run import Rejection
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -70,7 +71,10 @@ def without_epochs(observations: gnss.Observations) -> FormatError:
     if not observations.n_refused:
         return FormatError(observations.path, "holds no epoch of measurements")
     first = observations.refused[0]
-    what = f"no epoch can be used: {observations.n_refused} records are refused, the first for {first.reason}: “{first.text.strip()[:80]}”"
+    what = (
+        f"no epoch can be used: {counted(observations.n_refused, 'record is', 'records are')} refused, the first for "
+        f"{first.reason}: “{first.text.strip()[:80]}”"
+    )
     return FormatError(observations.path, what, first.line, first.field)
 
 

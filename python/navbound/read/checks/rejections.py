@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 from navbound.errors import FormatError
 from navbound.records.run import Rejection
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -59,7 +60,7 @@ class Rejections:
 
     def in_words(self) -> str:
         """The reasons with their counts, the first few, behind a colon; nothing where no row was left out."""
-        each = [f"{r.count} rows left out, {r.reason} ({r.example})" for r in self.records[:_SHOWN]]
+        each = [f"{counted(r.count, 'row')} left out, {r.reason} ({r.example})" for r in self.records[:_SHOWN]]
         return ": " + "; ".join(each) if each else ""
 
     def without_position(self) -> str:
@@ -82,7 +83,8 @@ class Rejections:
         field, separator, kind = reason.partition(": ")
         raise FormatError(
             self.path,
-            f"{kind if separator else reason}: found “{example[:80]}”; {malformed} of {n_rows} rows are malformed, "
+            f"{kind if separator else reason}: found “{example[:80]}”; {malformed} of {counted(n_rows, 'row')} "
+            f"{agreeing(malformed, 'is', 'are')} malformed, "
             f"more than the {MAX_BAD_SHARE:.0%} that may be left out{where}",
             first if self.unit == "line" else None,
             field if separator else None,

@@ -12,6 +12,7 @@ from navbound.read.checks.stated import ALERT
 from navbound.records.material import LEFT_OUT
 from navbound.table.columns import COVARIANCE, VARIANCES
 from navbound.units import EARTH_RADIUS_M
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -120,7 +121,14 @@ def without_shared(rows: pl.DataFrame, epochs: pl.DataFrame) -> tuple[pl.DataFra
 
 def shared_words(file: str, n: int) -> list[str]:
     """A note on rows that share the instant of a position, where there are any."""
-    return [f"{file}: {n} rows without a position have the time of one with a position and count as one instant with it"] if n else []
+    return (
+        [
+            f"{file}: {counted(n, 'row')} without a position {agreeing(n, 'has', 'have')} the time of one with a position and "
+            f"{agreeing(n, 'counts', 'count')} as one instant with it"
+        ]
+        if n
+        else []
+    )
 
 
 def separate(epochs: pl.DataFrame, *, whole_seconds: bool = False, usual: int = 1) -> Repeats:

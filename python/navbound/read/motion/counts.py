@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound.read.motion.ways import WINDOW_S
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -89,4 +90,4 @@ class Comparison:
         if not false and not (short or (of_these >= _LEAST and of_these >= _LEAST_SHARE * minutes)):
             return None
         which = f" ({len(false)} of {len(self.tracks)} tracks, {false[0]} the first of them)" if false and len(self.tracks) > 1 else ""
-        return f"in {of_these:.0f} of {minutes:.0f} minutes{which}"
+        return f"in {of_these:.0f} of {counted(round(minutes), 'minute')}{which}"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from navbound.read.quantities import QUANTITY, UNITS
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from navbound.read.tables.columns import Column
@@ -28,7 +29,8 @@ def on_ground(column: pl.Series, what: Column) -> pl.Series:
 
 def words_of_ground(name: str, n_rows: int) -> str:
     """How many rows say so."""
-    return f"{n_rows} rows say “{_GROUND}” in place of an altitude in “{name}”: they have a position and no altitude"
+    have = agreeing(n_rows, "it has", "they have")
+    return f"{counted(n_rows, 'row says', 'rows say')} “{_GROUND}” in place of an altitude in “{name}”: {have} a position and no altitude"
 
 
 def no_field(dtype: pl.DataType) -> bool:

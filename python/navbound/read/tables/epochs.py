@@ -23,6 +23,7 @@ from navbound.read.tables.table import LINE, Table, table
 from navbound.read.tables.values import SHOWN, Late, Values, one_row_a_time, texts
 from navbound.records.material import LEFT_OUT
 from navbound.table.columns import COVARIANCE
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -203,7 +204,10 @@ def _log(source: Source, log: receivers.Log) -> Reading:
     # Of GGA: the count of other messages is part of their fix.
     out, n_few = of_counted_satellites(out) if source.format.id == "nmea" else (out, 0)
     if n_few:
-        log.notes.append(f"{source.path.name}: {n_few} positions count fewer satellites than determine one; they are not ok.")
+        log.notes.append(
+            f"{source.path.name}: {counted(n_few, 'position counts', 'positions count')} fewer satellites than determine one; "
+            f"{agreeing(n_few, 'it is', 'they are')} not ok."
+        )
     out, unjudged = _in_order(out, rejections, log.notes)
     empty = [c for c in out.columns if out[c].is_null().all()]
     # The receiver lived and had no position: a row of a table without one counts in the same way.

@@ -25,6 +25,7 @@ from navbound.read.tables.names import Callsigns, one_writing
 from navbound.read.tables.stated_units import is_row_of_units, require_same
 from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, shown, understand, units
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -304,7 +305,8 @@ class Values:
                 of, beside = columns[name], columns[other]
                 self.notes.append(
                     f"{self._path.name}: “{of.name}” was read as {of.unit}, and is 3.28 times “{beside.name}” ({beside.unit}) at {n} of "
-                    f"{self._n_heights} rows: one of them is in another unit than it is read in; {declare(f'{name}={of.name}:ft')}"
+                    f"{counted(self._n_heights, 'row')}: one of them is in another unit than it is read in; "
+                    f"{declare(f'{name}={of.name}:ft')}"
                 )
 
     def _listed_statuses(self, part: pl.DataFrame) -> pl.DataFrame:
@@ -349,8 +351,9 @@ class Values:
         name = self._path.name
         if self._n_unknown:
             self.notes.append(
-                f"{name}: {self._n_unknown} epochs have a status that is none of {', '.join(status.STATUSES)} "
-                f"({', '.join(list(self._unknown_statuses)[: statements.SHOWN])}); they are not judged"
+                f"{name}: {counted(self._n_unknown, 'epoch has', 'epochs have')} a status that is none of {', '.join(status.STATUSES)} "
+                f"({', '.join(list(self._unknown_statuses)[: statements.SHOWN])}); {agreeing(self._n_unknown, 'it is', 'they are')} "
+                "not judged"
             )
         self.notes += self._callsigns.words(name)
         self.notes += [f"{name}: {words_of_ground(column, n)}" for column, n in self._n_ground.items() if n]
@@ -485,7 +488,7 @@ class Values:
         self.position_doubts += [each for each in self._no_speeds.doubts(self._path) if each not in self.position_doubts]
         if self._dated is None or self._n_undated <= self._n_dated:
             return self.position_doubts
-        unread = f"{self._n_undated} of its {self._n_undated + self._n_dated} fields cannot be read as a time"
+        unread = f"{self._n_undated} of its {counted(self._n_undated + self._n_dated, 'field')} cannot be read as a time"
         return [*self.position_doubts, f"{self._path.name}: “{self._dated.name}” says when positions were valid, and {unread}"]
 
     def described(self) -> dict[str, str]:
@@ -543,7 +546,10 @@ class Late:
         if not self._n:
             return []
         n, first = self._n, f"{unit} {self._first}"
-        return [f"{path.name}: {n} rows stood after a later one of their track and were put in order of time (first: {first})"]
+        return [
+            f"{path.name}: {counted(n, 'row')} stood after a later one of {agreeing(n, 'its', 'their')} track and "
+            f"{agreeing(n, 'was', 'were')} put in order of time (first: {first})"
+        ]
 
 
 def one_row_a_time(out: pl.DataFrame, tally: Tally, *, whole_seconds: bool = False, usual: int = 1) -> Repeats:

@@ -24,6 +24,7 @@ from navbound.run.inputs.solving import Solving, require_same_time
 from navbound.table.columns import COVARIANCE
 from navbound.table.declare import schema
 from navbound.table.lookup import named
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -168,7 +169,7 @@ def _faulty_cells(epochs: pl.DataFrame) -> list[str]:
     ):
         n = epochs.filter(claims & pl.col(column)).height if column in epochs.columns else 0
         if n:
-            words.append(f"not shown: the file states {what.format('1 row' if n == 1 else f'{n} rows')}")
+            words.append(f"not shown: the file states {what.format(counted(n, 'row'))}")
     return words
 
 

@@ -17,6 +17,7 @@ from navbound.run.inputs.solving import Solving, require_same_time
 from navbound.run.verdict.numbers import share
 from navbound.status import REASONS
 from navbound.units import METRES_PER_NM
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -118,13 +119,14 @@ def decisions(epochs: pl.DataFrame) -> list[str]:
     named = ", ".join(f"{satellites} at {count}" for satellites, count in each)
     which = f" ({named})" if named else ""
     words = [
-        f"{n} epochs: a fault detected at {lost + excluded.height}, excluded at {excluded.height}{which}, not to be excluded at {lost}; a "
+        f"{counted(n, 'epoch')}: a fault detected at {lost + excluded.height}, excluded at {excluded.height}{which}, not to be "
+        f"excluded at {lost}; a "
         f"position but no way to detect a fault at {without}."
     ]
     if none.height:
         why = none["reason_id"].value_counts(sort=True).head(3).iter_rows()
         causes = "; ".join(f"{REASONS[id_].words if id_ else 'without a reason'} at {count}" for id_, count in why)
-        words.append(f"No position at {none.height} epochs: {causes}.")
+        words.append(f"No position at {counted(none.height, 'epoch')}: {causes}.")
     if "hel_m" in epochs.columns:
         limits = ", ".join(f"{rnp:g}" for rnp in RNP_NM)
         shares = "; ".join(f"{what} {_within(epochs[column])}" for column, what in WITHIN.items())

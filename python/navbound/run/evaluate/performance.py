@@ -36,6 +36,7 @@ from navbound.run.verdict.results import beside_words, unread_words
 from navbound.run.verdict.words import COPIED
 from navbound.storage import folders
 from navbound.table.columns import COVARIANCE
+from navbound.words.plurals import counted
 from navbound.write.field_csv import write_csv
 
 if TYPE_CHECKING:
@@ -210,7 +211,7 @@ def _add_all(parts: list[Stored], levels: Sequence[str | kpi.Level], options: Op
 
 def _title(parts: list[Stored]) -> str:
     names = [part.source.path.name for part in parts]
-    return ", ".join(names) if len(names) <= 3 else f"{names[0]} and {len(names) - 1} more files"
+    return ", ".join(names) if len(names) <= 3 else f"{names[0]} and {counted(len(names) - 1, 'more file')}"
 
 
 def _inputs(sources: Files, truth: Truth, parts: list[Stored]) -> list[InputFile]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from navbound.gnss.monitor_fit import DISBELIEF
 from navbound.records.verdict import LEAST_SHARE
 from navbound.run.verdict.numbers import length, share
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from navbound.records.performance import LevelResult, Performance, Subsets
@@ -46,7 +47,8 @@ def _integrity(result: Performance) -> str:
     if not result.truth_known:
         return "Without truth neither integrity nor accuracy can be judged."
     hazards = [
-        f"{each.level.id} at {each.n_hazard_epochs} epochs ({each.n_hazard_over_tta} of {each.n_hazard_events} runs longer than "
+        f"{each.level.id} at {counted(each.n_hazard_epochs, 'epoch')} ({each.n_hazard_over_tta} of "
+        f"{counted(each.n_hazard_events, 'run')} longer than "
         f"{each.level.tta_s:g} s)"
         for each in result.levels
         if each.n_hazard_epochs
@@ -55,7 +57,7 @@ def _integrity(result: Performance) -> str:
     if hazards:
         return f"Hazardously misleading information: {', '.join(hazards)}. {known}"
     if result.n_mi_epochs:
-        return f"No hazard, but misleading information at {result.n_mi_epochs} epochs. {known}"
+        return f"No hazard, but misleading information at {counted(result.n_mi_epochs, 'epoch')}. {known}"
     return f"No misleading information at any epoch whose error is known. {known}"
 
 
@@ -66,7 +68,7 @@ def _known(result: Performance) -> str:
     for axis, name in zip(result.axes, ("horizontal", "vertical"), strict=True):
         n = 0 if axis.error_m is None else axis.error_m.n
         if n:
-            words.append(f"{name} at {n} of {result.n_solution} epochs with a protection level ({share(n / result.n_solution)})")
+            words.append(f"{name} at {n} of {counted(result.n_solution, 'epoch')} with a protection level ({share(n / result.n_solution)})")
         elif name == "horizontal" or vertical:
             unknown.append(f"The {name} was not judged: no {name} error is known.")
     return " ".join([f"Errors are known: {', '.join(words)}." if words else "", *unknown]).strip()
@@ -76,14 +78,17 @@ def _availability(result: Performance) -> str:
     hours = result.n_expected * result.period_s / 3600
     span = f"{hours:.3g} h" if hours < 48 else f"{hours / 24:.4g} days"
     absent = "absent epochs are not expected" if result.exclude_missing else f"{result.n_missing} absent"
-    repeated = f"; {result.n_repeated} rows share an epoch with another, the worst counts" if result.n_repeated else ""
+    repeated = (
+        f"; {counted(result.n_repeated, 'row shares', 'rows share')} an epoch with another, the worst counts" if result.n_repeated else ""
+    )
     each = [
         f"{each.level.id} {share(each.availability_expected)} ({share(each.availability_low)} to {share(each.availability_high)}, "
-        f"as from {each.n_effective:.0f} independent epochs)"
+        f"as from {counted(round(each.n_effective), 'independent epoch')})"
         for each in result.levels
     ]
     return (
-        f"Available, of {result.n_expected} expected epochs ({span}, one every {result.period_s:g} s; {absent}, {result.n_no_solution} "
+        f"Available, of {counted(result.n_expected, 'expected epoch')} ({span}, one every {result.period_s:g} s; {absent}, "
+        f"{result.n_no_solution} "
         f"without a level{repeated}): {', '.join(each)}."
     )
 
@@ -92,7 +97,7 @@ def _continuity(result: Performance) -> str:
     def one(level: LevelResult) -> str:
         if level.continuity_risk is None:
             return f"{level.level.id} never available"
-        losses = f"{level.level.id} {level.n_continuity_events} {'loss' if level.n_continuity_events == 1 else 'losses'}"
+        losses = f"{level.level.id} {counted(level.n_continuity_events, 'loss', 'losses')}"
         return f"{losses}, risk {level.continuity_risk:.2g}" if level.window_meaningful else losses
 
     first = result.levels[0]

@@ -23,6 +23,7 @@ from navbound.scenario.plan import read_plan
 from navbound.storage import folders
 from navbound.time import utc_text
 from navbound.units import METRES_PER_NM
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from navbound.records.prediction import ExpectedLeg
@@ -162,8 +163,7 @@ def _sentences(lines: list[ExpectedLeg], level: Shift, table: pl.DataFrame) -> l
     else:
         lasts = level.longest_hole_s
         beyond = f", longer than the {DISPATCH_HOLE_S / 60:g} min up to which dispatch is usual" if lasts > DISPATCH_HOLE_S else ""
-        plural = "s" if level.n_holes > 1 else ""
-        words.append(f"Integrity: {level.n_holes} hole{plural} of the protection level; the longest is {lasts / 60:.1f} min{beyond}.")
+        words.append(f"Integrity: {counted(level.n_holes, 'hole')} of the protection level; the longest is {lasts / 60:.1f} min{beyond}.")
     return words
 
 

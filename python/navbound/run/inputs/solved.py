@@ -24,6 +24,7 @@ from navbound.records.run import Rejection
 from navbound.run.inputs.solving import Solving, require_same_time
 from navbound.status import REASONS
 from navbound.time import utc_text
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -75,7 +76,8 @@ def _against_own(path: Path, known: pl.DataFrame, own: pl.DataFrame) -> list[str
     if n_far <= OWN_APART_SHARE * both.height:
         return []
     return [
-        f"{path.name}: at {n_far} of {both.height} epochs the receiver's own position is more than {PLACES_APART_M:.0f} m from the solved "
+        f"{path.name}: at {n_far} of {counted(both.height, 'epoch')} the receiver's own position is more than {PLACES_APART_M:.0f} m "
+        "from the solved "
         f"one, the furthest {apart_m.max():.0f} m: one of them is wrong, and a truth decides which"
     ]
 
@@ -122,11 +124,11 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
         raise FormatError(source.path, f"no position could be solved; {'; '.join(why)}")
     path = str(source.path)
     rejected = [
-        Rejection(file=path, reason=f"no position: {REASONS[id_].words}", count=count, first_line=None, example=f"{count} epochs")
+        Rejection(file=path, reason=f"no position: {REASONS[id_].words}", count=count, first_line=None, example=counted(count, "epoch"))
         for id_, count in without.group_by("reason_id").len().sort("reason_id").iter_rows()
     ]
     rejected += [
-        Rejection(file=path, reason=f"time repeated{words}", count=rows.height, first_line=None, example=f"{rows.height} epochs")
+        Rejection(file=path, reason=f"time repeated{words}", count=rows.height, first_line=None, example=counted(rows.height, "epoch"))
         for words, rows in repeats.kinds.items()
     ]
     rejected += of_observations(observations)

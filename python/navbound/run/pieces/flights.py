@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import polars as pl
 
+from navbound.words.plurals import counted
+
 LONGEST_GAP_S = 1800.0
 """A gap in which another flight may have begun is longer. [s] Provenance: ours."""
 _MOST = 999
@@ -56,7 +58,7 @@ class Flights:
         if starts.is_empty():
             return []
         n = starts["track"].n_unique()
-        which = f"{n} {'track was' if n == 1 else 'tracks were'} divided into {n + starts.height} flights"
+        which = f"{counted(n, 'track was', 'tracks were')} divided into {n + starts.height} flights"
         return [
             f"Flights: {which}, where the callsign changes in a gap of more than {LONGEST_GAP_S / 60:.0f} min; such a gap holds no missing "
             "epochs."

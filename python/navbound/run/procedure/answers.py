@@ -14,6 +14,7 @@ from navbound.errors import NavboundError
 from navbound.methods import column_of
 from navbound.records.procedure import HeightResult, LegFlown, ProcedureFlown
 from navbound.table.columns import COVARIANCE
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -132,13 +133,13 @@ def _bounds(epochs: pl.DataFrame) -> tuple[NDArray[np.bool_], NDArray[np.bool_],
 
 def _second(counts: dict[str, int], n: int, legs: list[LegFlown], level: float) -> str:
     if not counts["n_bound"]:
-        return f"Bound of the total error: no epoch has one (no covariance), so the second answer is not shown for {n} epochs."
+        return f"Bound of the total error: no epoch has one (no covariance), so the second answer is not shown for {counted(n, 'epoch')}."
     by_leg = ", ".join(f"{leg.fix or leg.terminator} {leg.n_bound_inside} of {leg.n_bound}" for leg in legs if leg.n_bound)
     words = (
         f"Bound of the total error ({100 * level:.4g} %): inside RNP at {counts['n_bound_inside']} of {counts['n_bound']}, "
         f"inside twice RNP at {counts['n_bound_inside_twice']} of {counts['n_bound']}; by leg: {by_leg}."
     )
-    return words if counts["n_bound"] == n else f"{words} {n - counts['n_bound']} epochs have no bound."
+    return words if counts["n_bound"] == n else f"{words} {counted(n - counts['n_bound'], 'epoch has', 'epochs have')} no bound."
 
 
 def _with_bound(result: HeightResult, epochs: pl.DataFrame, risk: float) -> HeightResult:

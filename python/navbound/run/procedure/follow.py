@@ -26,6 +26,7 @@ from navbound.run.procedure.answers import flown_record
 from navbound.run.procedure.heights import height_results, heights, setting_result
 from navbound.time import utc_text
 from navbound.units import METRES_PER_NM
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -211,4 +212,7 @@ def _status_words(track: str, followed: Followed) -> str:
 
 def _words(track: str, time_ns: int, flight: Flight) -> str:
     when = utc_text(time_ns + round(flight.first_time_s * 1e9))
-    return f"{track}: judged from {when} UTC on; {flight.n_without_rnp} positions on legs without an RNP are not."
+    return (
+        f"{track}: judged from {when} UTC on; {counted(flight.n_without_rnp, 'position')} on legs without an RNP "
+        f"{agreeing(flight.n_without_rnp, 'is', 'are')} not."
+    )

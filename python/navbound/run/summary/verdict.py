@@ -11,6 +11,7 @@ from navbound.run.verdict import rule
 from navbound.run.verdict.belief import is_vertical, of_epochs
 from navbound.run.verdict.numbers import duration
 from navbound.run.verdict.results import protection_words, verdict_words
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from navbound.records.material import Material
@@ -168,7 +169,8 @@ def _scattered(material: Material, known: VerdictFacts, judging: str) -> list[st
     if scatter.along_m <= worst.margin_m:
         return []
     return [
-        f"The positions scatter along their way by {scatter.along_m:.0f} m (95 % of {scatter.n} steps of track {scatter.track}, less what "
+        f"The positions scatter along their way by {scatter.along_m:.0f} m (95 % of {counted(scatter.n, 'step')} of track "
+        f"{scatter.track}, less what "
         f"their own speeds say): positions are older or younger than their rows, which the covariance does not hold, and the bound leaves "
         f"{worst.margin_m:.0f} m of the limit"
     ]

@@ -30,11 +30,6 @@ def share(fraction: float) -> str:
     return f"{percent:.{digits}f} %"
 
 
-def epochs(count: int) -> str:
-    """A number of epochs."""
-    return f"{count} epoch" if count == 1 else f"{count} epochs"
-
-
 def level(risk: float) -> str:
     """A probability level: 0.05 is 95 %, 1e-5 is 99.999 %."""
     return f"{100 * (1 - risk):.10g} %"

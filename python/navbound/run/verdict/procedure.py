@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from navbound.run.verdict.numbers import length
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from navbound.records.procedure import BesideProcedure
@@ -25,7 +26,12 @@ def beside_procedure_words(beside: BesideProcedure | None) -> str:
         return ""
     n = sum(beside.n_status.values())
     kinds = ", ".join(f"{count} {_BESIDE.get(status, status)}" for status, count in beside.n_status.items())
-    apart = f"; {n} of {beside.n_recorded} recorded positions are no part of this and are not judged ({kinds})" if n else ""
+    apart = (
+        f"; {n} of {counted(beside.n_recorded, 'recorded position')} {agreeing(n, 'is', 'are')} no part of this and "
+        f"{agreeing(n, 'is', 'are')} not judged ({kinds})"
+        if n
+        else ""
+    )
     return f"{_late(beside)}{_short(beside)}{apart}"
 
 
@@ -42,7 +48,10 @@ def _short(beside: BesideProcedure) -> str:
     where = f"{'' if beside.short_m is None else f'{length(beside.short_m)} '}before the end of the procedure"
     if beside.n_short == 1:
         return f"; the track {what} {where}"
-    return f"; {beside.n_short} flights end or leave the path before the end of the procedure, the earliest {what} {where}"
+    return (
+        f"; {counted(beside.n_short, 'flight ends or leaves', 'flights end or leave')} the path before the end of the procedure, "
+        f"the earliest {what} {where}"
+    )
 
 
 def incomplete_words(beside: BesideProcedure | None) -> list[str]:

@@ -9,12 +9,13 @@ import numpy as np
 from navbound import _core
 from navbound.read.checks.statements import speaks_of_accuracy, speaks_of_level
 from navbound.read.tables.columns import declare
-from navbound.run.verdict.numbers import duration, epochs, length, level, share
+from navbound.run.verdict.numbers import duration, length, level, share
 from navbound.run.verdict.procedure import beside_procedure_words, incomplete_words
 from navbound.run.verdict.rule import FEW_EPOCHS, has_approaches
 from navbound.run.verdict.words import COPIED, contradicted_words, covered_words, refuted_words, short_words, truth_words
 from navbound.status import REASONS
 from navbound.time import utc_text
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -51,12 +52,14 @@ def verdict_words(
     parts += incomplete_words(verdict.beside)
     if verdict.n_implausible:
         parts.append(
-            f"{verdict.n_implausible} epochs cannot be true (see their reasons); what looks right beside them may be wrong as well."
+            f"{counted(verdict.n_implausible, 'epoch')} cannot be true (see their reasons); what looks right beside them may be "
+            "wrong as well."
         )
     parts += _contradicted(verdict)
     if verdict.n_long_steps and verdict.longest_step_s is not None:
         parts.append(
-            f"Between epochs nothing is known: {verdict.n_long_steps} steps are longer than a position takes to become stale, "
+            f"Between epochs nothing is known: {counted(verdict.n_long_steps, 'step is', 'steps are')} longer than a position takes "
+            "to become stale, "
             f"the longest {duration(verdict.longest_step_s)}."
         )
     parts += unread_words(verdict.unread)
@@ -99,20 +102,26 @@ def _first(verdict: Verdict, risks: tuple[float, float]) -> str:
     accuracy, integrity = (level(risk) for risk in risks)
     shares = _shares(verdict)
     if verdict.id == "nothing_judged" or verdict.share_inside is None or verdict.share_contained is None:
-        outside = f" {verdict.n_outside} epochs that are not ok have a bound beyond its limit." if verdict.n_outside else ""
+        outside = (
+            f" {counted(verdict.n_outside, 'epoch that is not ok has', 'epochs that are not ok have')} a bound beyond its limit."
+            if verdict.n_outside
+            else ""
+        )
         return f"{HEADLINES[verdict.id]} {verdict.requirement}: {shares}.{outside}"
     if verdict.id == "not_believable":
         n = verdict.n_known_beyond
-        beyond = f"at {n} ok epochs the known error is beyond twice RNP though the bound is within it" if n else ""
+        beyond = f"at {counted(n, 'ok epoch')} the known error is beyond twice RNP though the bound is within it" if n else ""
         false = refuted_words(verdict.belief) if verdict.belief is not None and (not n or verdict.belief.state == "refuted") else ""
         why = "; ".join(each for each in (beyond, false) if each) or refuted_words(verdict.belief)
         return f"{HEADLINES[verdict.id]}, margins to {verdict.requirement} mean nothing: {why}; {shares}."
     # Where every judged epoch is within, those that are outside are degraded: the worst margin beside them is of the judged ones.
-    whose = "degraded epochs" if verdict.share_inside == verdict.share_contained == 1.0 else "epochs with status ok or degraded"
-    more = f", and {verdict.n_outside} {whose} have a bound beyond its limit" if verdict.n_outside else ""
+    all_within = verdict.share_inside == verdict.share_contained == 1.0
+    whose = ("degraded {}", "") if all_within else ("{}", " with status ok or degraded")
+    one, many = (f"{whose[0].format(each)}{whose[1]} {has}" for each, has in (("epoch", "has"), ("epochs", "have")))
+    more = f", and {counted(verdict.n_outside, one, many)} a bound beyond its limit" if verdict.n_outside else ""
     return (
         f"{HEADLINES[verdict.id]} {verdict.requirement}: the {accuracy} bound is within RNP at {share(verdict.share_inside)} of "
-        f"{verdict.n_judged} judged epochs, the {integrity} bound within twice RNP at {share(verdict.share_contained)}{more}; "
+        f"{counted(verdict.n_judged, 'judged epoch')}, the {integrity} bound within twice RNP at {share(verdict.share_contained)}{more}; "
         f"{shares}{covered_words(verdict.belief)}{_thin(verdict)}."
     )
 
@@ -129,7 +138,7 @@ def _reasons(verdict: Verdict) -> list[str]:
     most = _MOST_REASONS + (len(verdict.n_reason) == _MOST_REASONS + 1)
     named = [f"{REASONS[id_].words if id_ in REASONS else id_} ({n})" for id_, n in list(verdict.n_reason.items())[:most]]
     more = len(verdict.n_reason) - len(named)
-    also = f"; {more} more reasons" if more else ""
+    also = f"; {counted(more, 'more reason')}" if more else ""
     return [f"Epochs that are not ok: {'; '.join(named)}{also}."] if named else []
 
 
@@ -138,22 +147,29 @@ def _thin(verdict: Verdict) -> str:
     if not 0 < verdict.n_judged < FEW_EPOCHS:
         return ""
     step = "" if verdict.longest_step_s is None else f", up to {duration(verdict.longest_step_s)} apart"
-    return f"; this is thin evidence, of only {verdict.n_judged} judged epoch{'' if verdict.n_judged == 1 else 's'}{step}"
+    return f"; this is thin evidence, of only {counted(verdict.n_judged, 'judged epoch')}{step}"
 
 
 def _shares(verdict: Verdict) -> str:
     """What became of all epochs."""
     many = verdict.n_absent > MANY_ABSENT * verdict.n_epochs
-    absent = f"; {verdict.n_absent} epochs that the usual step leaves room for are absent, in gaps too short to count" if many else ""
+    room = "that the usual step leaves room for"
+    n_absent = counted(verdict.n_absent, f"epoch {room} is", f"epochs {room} are")
+    absent = f"; {n_absent} absent, in gaps too short to count" if many else ""
     unjudged = f"{absent}{_unjudged_approaches(verdict)}{beside_procedure_words(verdict.beside)}"
     if verdict.n_epochs == 0:
         return f"there is no epoch{unjudged}"
     if verdict.n_judged == verdict.n_epochs:
+        if verdict.n_epochs == 1:
+            return f"the one epoch{' that is there' if many else ''} is ok and judged{unjudged}"
         there = " that are there" if many else ""
         return f"all {verdict.n_epochs} epochs{there} are ok and judged{unjudged}"
-    missing = f" ({verdict.n_missing} epochs missing in gaps or without a usable time and position)" if verdict.n_missing else ""
+    missing = f" ({counted(verdict.n_missing, 'epoch')} missing in gaps or without a usable time and position)" if verdict.n_missing else ""
     kinds = {"ok and judged": verdict.n_judged, "degraded": verdict.n_degraded, f"without a bound{missing}": verdict.n_unjudged}
-    return f"of {verdict.n_epochs} epochs {', '.join(f'{share(n / verdict.n_epochs)} are {kind}' for kind, n in kinds.items())}{unjudged}"
+    return (
+        f"of {counted(verdict.n_epochs, 'epoch')} "
+        f"{', '.join(f'{share(n / verdict.n_epochs)} are {kind}' for kind, n in kinds.items())}{unjudged}"
+    )
 
 
 def _unjudged_approaches(verdict: Verdict) -> str:
@@ -165,9 +181,9 @@ def _unjudged_approaches(verdict: Verdict) -> str:
         else "are not judged, since they stray or end before they are one"
     )
     n_elsewhere = verdict.n_tracks_elsewhere
-    without = "track has" if n_elsewhere == 1 else "tracks have"
-    elsewhere = f"; {n_elsewhere} {without} no approach to these runways and {'is' if n_elsewhere == 1 else 'are'} not judged"
-    return (f"; {n} of {n_all} approaches {which}" if n else "") + (elsewhere if n_elsewhere else "")
+    without = counted(n_elsewhere, "track has", "tracks have")
+    elsewhere = f"; {without} no approach to these runways and {agreeing(n_elsewhere, 'is', 'are')} not judged"
+    return (f"; {n} of {counted(n_all, 'approach', 'approaches')} {which}" if n else "") + (elsewhere if n_elsewhere else "")
 
 
 def _not_shown(verdict: Verdict) -> list[str]:
@@ -184,28 +200,31 @@ def _not_shown(verdict: Verdict) -> list[str]:
     if verdict.belief is not None and verdict.belief.state == "contradicted":
         why += contradicted_words(verdict.belief)
     if verdict.n_stated_beyond:
-        why.append(f"The recording itself states an error beyond RNP at {epochs(verdict.n_stated_beyond)}.")
+        why.append(f"The recording itself states an error beyond RNP at {counted(verdict.n_stated_beyond, 'epoch')}.")
     if verdict.n_stated_alert:
         which = f" ({'; '.join(verdict.stated_alerts)})" if verdict.stated_alerts else ""
-        why.append(f"The recording itself states an alert at {epochs(verdict.n_stated_alert)}{which}.")
+        why.append(f"The recording itself states an alert at {counted(verdict.n_stated_alert, 'epoch')}{which}.")
     if verdict.n_stated_worse:
         why.append(
-            f"The recording itself states an accuracy (95 % radius: EPU, NACp, NUCp, sigma) at {epochs(verdict.n_stated_worse)} that is "
+            "The recording itself states an accuracy (95 % radius: EPU, NACp, NUCp, sigma) at "
+            f"{counted(verdict.n_stated_worse, 'epoch')} that is "
             f"worse than the covariance allows.{_read_as_metres(verdict.unread)}"
         )
     if verdict.n_stated_uncontained:
         why.append(
             f"The recording itself states a containment radius (Rc, NIC, NUCp, PIC, a protection level) beyond twice RNP, or none, at "
-            f"{epochs(verdict.n_stated_uncontained)}.{_levels_read_as_metres(verdict.unread)}"
+            f"{counted(verdict.n_stated_uncontained, 'epoch')}.{_levels_read_as_metres(verdict.unread)}"
         )
     if verdict.n_apart and verdict.largest_apart_m is not None:
         why.append(
-            f"{verdict.n_apart} positions stand further from the line between their neighbours than their covariances allow "
+            f"{counted(verdict.n_apart, 'position stands', 'positions stand')} further from the line between "
+            f"{agreeing(verdict.n_apart, 'its neighbours than its covariance allows', 'their neighbours than their covariances allow')} "
             f"(up to {verdict.largest_apart_m:.0f} m): two receivers under one name, or a covariance that is too small."
         )
     if verdict.n_without_level:
         why.append(
-            f"A column of horizontal protection levels holds none in the tracks of {verdict.n_without_level} judged epochs: their "
+            "A column of horizontal protection levels holds none in the tracks of "
+            f"{counted(verdict.n_without_level, 'judged epoch')}: their "
             "integrity was compared without a level."
         )
     return why
@@ -217,7 +236,7 @@ def beside_words(n_epochs: int, unread: Sequence[str]) -> list[str]:
         return []
     return [
         f"Not shown: the file itself states an accuracy or an error (EPU, sigma) above its horizontal protection level at "
-        f"{epochs(n_epochs)}.{_read_as_metres(unread)}"
+        f"{counted(n_epochs, 'epoch')}.{_read_as_metres(unread)}"
     ]
 
 
@@ -265,8 +284,10 @@ def protection_words(protection: list[ProtectionSummary]) -> str:
     available = share(sum(p.share_available * p.n_epochs for p in protection) / n)
     provenance = ", ".join(sorted({p.hal_held for p in protection}))
     misleading = sum(p.n_misleading for p in protection)
-    truth = f" At {misleading} epochs the true error is above the protection level: misleading information." if misleading else ""
-    return f" Protection level within the alert limit ({provenance}) at {available} of {n} epochs.{truth}"
+    truth = (
+        f" At {counted(misleading, 'epoch')} the true error is above the protection level: misleading information." if misleading else ""
+    )
+    return f" Protection level within the alert limit ({provenance}) at {available} of {counted(n, 'epoch')}.{truth}"
 
 
 def consistency_words(nees: Nees, pit: Pit, regions: Sequence[RegionCoverage] = ()) -> str:
@@ -300,7 +321,7 @@ def _judgement(nees: Nees, pit: Pit) -> str:
     largest = max(pit.counts) * len(pit.counts) / sum(pit.counts)
     return (
         f": no reason to doubt the size of the covariance. But {n_outside} of the {len(pit.counts)} bins of the histogram "
-        f"{'is' if n_outside == 1 else 'are'} outside the band (one in twenty is by chance), and the fullest holds {largest:.2g} times its "
+        f"{agreeing(n_outside, 'is', 'are')} outside the band (one in twenty is by chance), and the fullest holds {largest:.2g} times its "
         "share: errors are not spread as one Gaussian."
     )
 

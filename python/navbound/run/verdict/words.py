@@ -9,6 +9,7 @@ from navbound.records.verdict import LEAST_SHARE
 from navbound.run.verdict.belief import is_excluded_vertical
 from navbound.run.verdict.numbers import in_metres, independent, level, share
 from navbound.run.verdict.rule import FEW_EPOCHS, SQUARE_OF_TRUE, TOO_SMALL
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from navbound.records.run import Belief, BoundCheck, LevelCheck, Verdict
@@ -55,7 +56,7 @@ def _false(bounds: list[BoundCheck], levels: list[LevelCheck]) -> list[str]:
         if each.n_above:
             axis, name = _LEVELS[each.level]
             most = f"(at most {each.largest_ratio:.3g} times the level)"
-            named.append(f"the {axis} error is above {name} at {each.n_above} of {each.n} epochs {most}")
+            named.append(f"the {axis} error is above {name} at {each.n_above} of {counted(each.n, 'epoch')} {most}")
     return named
 
 
@@ -89,7 +90,9 @@ def _checked(verdict: Verdict) -> list[str]:
     if not verdict.truth_known:
         return ["No truth: the covariance could not be checked."]
     if belief is None or not (belief.bounds or belief.beside):
-        return [f"Truth is known at {verdict.n_truth} epochs, but at none that has a covariance: the bounds could not be checked."]
+        return [
+            f"Truth is known at {counted(verdict.n_truth, 'epoch')}, but at none that has a covariance: the bounds could not be checked."
+        ]
     lateral = _contained(belief.bounds)
     # What truth contradicts stands in the first sentence already.
     other = _contained([check for check in belief.beside if check.method == "anp-vertical" and not check.refuted])
@@ -140,9 +143,9 @@ def _few(belief: Belief) -> list[str]:
 
 def _known(belief: Belief) -> str:
     if belief.n_truth == belief.n_epochs:
-        return f"Truth is known at all {belief.n_epochs} checked epochs"
+        return f"Truth is known at {'all ' if belief.n_epochs != 1 else ''}{counted(belief.n_epochs, 'checked epoch')}"
     less = f", which are too many to call the bounds supported (least share {share(LEAST_SHARE)})" if belief.state == "partial" else ""
-    known = f"{belief.n_truth} of {belief.n_epochs} checked epochs ({share(belief.n_truth / belief.n_epochs)})"
+    known = f"{belief.n_truth} of {counted(belief.n_epochs, 'checked epoch')} ({share(belief.n_truth / belief.n_epochs)})"
     return f"Truth is known at {known}, and the bounds of the others could not be checked{less}"
 
 
@@ -168,7 +171,7 @@ def _below(belief: Belief) -> list[str]:
 
 
 def _levels(belief: Belief) -> list[str]:
-    respected = [f"{_LEVELS[each.level][1]} at any of {each.n} epochs" for each in belief.levels if not each.n_above]
+    respected = [f"{_LEVELS[each.level][1]} at any of {counted(each.n, 'epoch')}" for each in belief.levels if not each.n_above]
     return [f"No error is above {' or '.join(respected)}."] if respected else []
 
 
