@@ -8,6 +8,7 @@ import { Store } from "../src/data/store.ts";
 import { clipSegment, ellipse, metresPerRadian, offset, plane, roundDown } from "../src/map/geometry.ts";
 import { sort } from "../src/panel/sortable.ts";
 import { clock, duration, level, metres, nauticalMiles, risk, share, signedMetres } from "../src/show/format.ts";
+import { earnsGreen } from "../src/panel/verdict.ts";
 
 const column = (over: Partial<PackedColumn>): PackedColumn => ({ name: "x_m", kind: "linear", resolution: 0.001, offset: 0, order: 0, ...over });
 
@@ -144,4 +145,11 @@ test("a store tells its watchers what changed, until they leave", () => {
     leave();
     store.set(3);
     assert.deepEqual(heard, [1, 2]);
+});
+
+test("a state that rests on what is not shown, or on an assumed sigma, is not green", () => {
+    assert.ok(earnsGreen({ id: "inside", assumed: ["no_path"] }));
+    assert.ok(earnsGreen({ id: "outside", assumed: [] }));
+    for (const id of ["not_shown", "not_believable", "nothing_judged"] as const) assert.ok(!earnsGreen({ id, assumed: [] }), id);
+    assert.ok(!earnsGreen({ id: "inside", assumed: ["no_path", "sigma_typed"] }));
 });

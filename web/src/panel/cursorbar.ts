@@ -6,14 +6,16 @@ import type { NumberName } from "../data/table.ts";
 import { button, choice, el, setValue, valueOf } from "../show/dom.ts";
 import { clock, metres, nauticalMiles, rnpName, signedMetres } from "../show/format.ts";
 import { columnOf } from "../chart/methods.ts";
+import { earnsGreen } from "./verdict.ts";
 
 const QUIET_MS = 350;
 
 export function cursorBar(host: HTMLElement, scene: Scene): () => void {
-    const { table } = scene;
+    const { table, payload } = scene;
     const slider = el("input", { type: "range", min: 0, max: table.n - 1, step: 1, "aria-label": "Epoch under the cursor", id: "epoch" });
     const fields = fieldsOf(scene).map((f) => ({ ...f, cell: valueOf(f.key, null, "") }));
-    const state = el("span", { class: "alert-word", "data-key": "alert" });
+    const green = earnsGreen(payload.summary.verdict);
+    const state = el("span", { class: "alert-word", "data-key": "alert", "data-green": green ? "" : undefined, title: green ? undefined : "By bounds of which the verdict shows nothing" });
     const live = el("p", { class: "sr", "aria-live": "polite", id: "cursor-words" });
     const whole = button("All", { class: "reset", "aria-label": "Show all epochs" }, () => scene.window.set(null));
     const happened = eventWindow(scene);

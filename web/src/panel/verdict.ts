@@ -53,7 +53,16 @@ export function toneOf(v: Pick<Verdict, "id" | "assumed" | "share_contained" | "
     if (v.id === "nothing_judged") return "unknown";
     if (v.id === "not_shown") return "caution";
     if (v.id === "outside") return (v.worst_integrity?.margin_m ?? 0) < 0 || (v.share_contained ?? 1) < 1 ? "warning" : "caution";
-    return v.assumed.some((a) => a !== "no_path") ? "unknown" : "inside";
+    return isAssumed(v) ? "unknown" : "inside";
+}
+
+function isAssumed(v: Pick<Verdict, "assumed">): boolean {
+    return v.assumed.some((a) => a !== "no_path");
+}
+
+/** Whether the state of an epoch may be green: one that rests on bounds that are not shown, or on a sigma that no data states, may not. */
+export function earnsGreen(v: Pick<Verdict, "id" | "assumed">): boolean {
+    return (v.id === "inside" || v.id === "outside") && !isAssumed(v);
 }
 
 /** What the numbers beside it do not say; a machine finds the shares in it. */
