@@ -204,7 +204,7 @@ def test_a_few_independent_epochs_below_the_claim_are_not_shown(tmp_path: Path) 
     assert (circle.coverage, circle.coverage_low) == (0.0, 0.0)
     assert circle.coverage_high > 0.95
     assert "of the errors at these epochs 0 % (0 % to " in verdict.words
-    assert "are within the 95 % circle (95 % intervals as from 1 independent epochs)" in verdict.words
+    assert "are within the 95 % circle (95 % intervals as from 1 independent epoch)" in verdict.words
 
 
 def test_a_bound_that_covers_leaves_the_verdict(tmp_path: Path) -> None:

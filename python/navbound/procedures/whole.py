@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from navbound.procedures.legs import STATES
-from navbound.words.plurals import counted
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -77,7 +77,10 @@ def _refused(database: Database, entry: Entry) -> list[str]:
                 f"Line {number} of {Path(database.file).name} is refused ({reasons[number]}); it may have been a part of this procedure."
             )
     more = len(words) - 3
-    return [*words[:3], *([f"{more} more lines of the file are refused that may have been."] if more > 0 else [])]
+    return [
+        *words[:3],
+        *([f"{counted(more, 'more line')} of the file {agreeing(more, 'is', 'are')} refused that may have been."] if more > 0 else []),
+    ]
 
 
 def _lines(file: str, numbers: set[int]) -> dict[int, str]:

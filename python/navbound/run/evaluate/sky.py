@@ -9,6 +9,7 @@ import polars as pl
 from navbound.gnss.receivers import USED
 from navbound.table.columns import HEARD
 from navbound.table.declare import schema
+from navbound.words.plurals import agreeing
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -51,5 +52,5 @@ def together(of_parts: Iterable[pl.DataFrame | None]) -> tuple[pl.DataFrame | No
         kept.append(part.select(schema(HEARD).names()))
     if not kept:
         return None, []
-    words = [f"The satellites are those of {n_parts} files; {n_more} more are not shown."] if n_more else []
+    words = [f"The satellites are those of {n_parts} files; {n_more} more {agreeing(n_more, 'is', 'are')} not shown."] if n_more else []
     return pl.concat(kept).cast(schema(HEARD)), words

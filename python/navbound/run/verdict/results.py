@@ -294,7 +294,7 @@ def consistency_words(nees: Nees, pit: Pit, regions: Sequence[RegionCoverage] = 
     """Whether the covariance may be believed, with the factor by which it is off, and on how much evidence."""
     opening = (
         f"NEES {nees.nees_mean:.3g}, {nees.dimension} for a consistent covariance, "
-        f"limits {nees.nees_low:.3g} to {nees.nees_high:.3g} for {nees.n_effective:.0f} effective epochs"
+        f"limits {nees.nees_low:.3g} to {nees.nees_high:.3g} for {counted(round(nees.n_effective), 'effective epoch')}"
     )
     return f"{opening}{_judgement(nees, pit)}{_regions(regions)}"
 

@@ -9,7 +9,7 @@ from navbound.records.verdict import LEAST_SHARE
 from navbound.run.verdict.belief import is_excluded_vertical
 from navbound.run.verdict.numbers import in_metres, independent, level, share
 from navbound.run.verdict.rule import FEW_EPOCHS, SQUARE_OF_TRUE, TOO_SMALL
-from navbound.words.plurals import counted
+from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from navbound.records.run import Belief, BoundCheck, LevelCheck, Verdict
@@ -153,7 +153,8 @@ def _contained(bounds: list[BoundCheck]) -> list[str]:
     whole = [check for check in bounds if check.n_outside == 0 and check.risk < WHOLE_BELOW]
     one = [f"{_figures(check)} are within the {_bound(check)}" for check in bounds if check not in whole]
     n_effective = min((check.n_effective for check in bounds), default=0.0)
-    parts = [f"{' and '.join(one)} (95 % intervals as from {independent(n_effective)} independent epochs)"] if one else []
+    of = agreeing(float(independent(n_effective)), "epoch")
+    parts = [f"{' and '.join(one)} (95 % intervals as from {independent(n_effective)} independent {of})"] if one else []
     return parts + ([f"none is beyond the {' or the '.join(_bound(check) for check in whole)}"] if whole else [])
 
 
