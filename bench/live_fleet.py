@@ -57,6 +57,8 @@ def produce(n: int, seconds: int, seed: int, to: Any) -> int:
             to.write("".join(due).encode())
             to.flush()
         time.sleep(TICK_S)
+    # At once: to give three million lines back takes seconds, in which a source that is open would be silent.
+    to.close()
     print(f"producer: {len(lines)} records, at most {late_s:.2f} s late", flush=True)
     return int(shift_ns)
 
@@ -154,8 +156,6 @@ def run(how: argparse.Namespace, folder: Path) -> None:
     before = [worker.cpu_s for worker in workers]
     broker_before_s = broker_use(server)[0]
     shift_ns = produce(how.aircraft, how.seconds, how.seed, feeder.process.stdin)
-    assert feeder.process.stdin is not None
-    feeder.process.stdin.close()
     feeder.process.wait()
     feeder.end()
     time.sleep(6.0)
@@ -219,6 +219,14 @@ def judge(how: argparse.Namespace, entry: list[dict[str, Any]], shift_ns: int) -
     ]
     double = len(entry) - len({t["key"] for t in entry})
     print(f"alerts: {len(truth)} of the batch monitor; {len(truth - set(names))} lost, {len(set(names) - truth)} extra, {double} double")
+    begun_ns = shift_ns + runpy.run_path(str(SHARED / "fleet.py"))["T0"]
+    for which, odd in (("lost", truth - set(names)), ("extra", set(names) - truth)):
+        for kind, turn in sorted({(name.split("/")[1], name.split("/")[3]) for name in odd}):
+            at_s = [(int(name.split("/")[2]) - begun_ns) / 1e9 for name in odd if name.split("/")[1::2] == [kind, turn]]
+            print(f"  {which}: {len(at_s)} {kind} {turn}, at {min(at_s):.1f} to {max(at_s):.1f} s")
+    for t in entry:
+        if not t["track"]:
+            print(f"  of the source: {t['kind']} {t['transition']} at {((t['annunciation_ns'] or 0) - begun_ns) / 1e9:.1f} s")
 
 
 def timed(declared: list[dict[str, Any]], killed_ns: int, again_ns: int) -> None:

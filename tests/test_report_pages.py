@@ -156,7 +156,7 @@ def test_a_covariance_of_the_plane_alone_is_compared_with_truth(browser: Browser
     assert landings.summary.honesty.dimension == 2
     page = _open(browser, landings.report)
     assert "No truth" not in page.locator("#honesty").inner_text()
-    assert page.locator("#verdict .words").inner_text() == landings.summary.verdict.lead
+    assert page.locator("#verdict .words").inner_text().split("\n\n") == landings.summary.verdict.lead
     # Every epoch is far within RNP: the risk is below what is distinguished, in one sentence.
     assert page.locator("#risk").inner_text().startswith("Risk of leaving 2 RNP, throughout: beyond 2 RNP < 10⁻¹²")
     page.context.close()

@@ -548,3 +548,19 @@ def test_a_track_without_speeds_is_judged_by_its_own(tmp_path: Path) -> None:
     # There and back at every second row: no aircraft.
     shaken = navbound.analyze(_cruise(tmp_path, dict.fromkeys(range(1, 1200, 2), 850.0)))
     assert shaken.summary.verdict.id != "inside"
+
+
+def test_a_verdict_is_its_sentences_why_before_how_many_and_older_ones_are_still_read(tmp_path: Path) -> None:
+    lat_deg = np.degrees(0.85 + 50.0 * np.arange(400) / M_PER_RAD) + 0.5
+    recording = table(tmp_path / "a.csv", degraded=300, added={"gps_lat": lat_deg, "gps_lon": [math.degrees(0.04)] * 400})
+    verdict = navbound.analyze(recording).summary.verdict
+    assert verdict.words == " ".join(verdict.sentences)
+    assert "not shown" in verdict.sentences[0]
+    assert set(verdict.lead) < set(verdict.sentences)
+    (doubt,) = verdict.position_doubts
+    counts = next(sentence for sentence in verdict.sentences if sentence.startswith("Epochs that are not ok"))
+    assert 0 < verdict.sentences.index(f"{doubt}.") < verdict.sentences.index(counts)
+    older = json.loads(verdict.model_dump_json()) | {"lead": "Not shown. Because."}
+    del older["sentences"]
+    read = type(verdict).model_validate(older)
+    assert (read.lead, read.sentences) == (["Not shown. Because."], [])

@@ -641,8 +641,10 @@ export interface Verdict {
     inside: boolean | null;
     /** The verdict as sentences: what, how much, worst where and when, what was assumed, whether truth was known. */
     words: string;
-    /** The same without what a page states beside it: the worst margins, the method that judged, the lateral bounds against truth. */
-    lead: string;
+    /** The same one by one: first what, then why, the gravest first; empty in runs that are older than this field. */
+    sentences: string[];
+    /** Those without what a page states beside it: the worst margins, the method that judged, the lateral bounds against truth. */
+    lead: string[];
     requirement: string;
     /** Id of the method that judged, see `methods`. */
     method: string;

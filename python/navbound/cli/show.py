@@ -80,7 +80,10 @@ def _metres(value: float | None) -> str:
 def _print(run: Run) -> None:
     summary = run.summary
     out_console.print(summary.title, style="bold", markup=False)
-    out_console.print(summary.verdict.words, markup=False, highlight=False)
+    first, *beside = summary.verdict.sentences or [summary.verdict.words]
+    out_console.print(first, markup=False, highlight=False)
+    for sentence in beside:
+        out_console.print(f"  - {sentence}", markup=False, highlight=False)
     for flight in summary.procedures:
         _print_procedure(flight, summary.name_of(flight.track))
     out_console.print("Assumed and found:", markup=False)

@@ -5,9 +5,9 @@ Presentation reads these and the epoch table; it computes nothing. Field names f
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from navbound.records.base import Record
 from navbound.records.faults import FaultSummary
@@ -16,6 +16,11 @@ from navbound.records.material import Operation
 from navbound.records.performance import Performance
 from navbound.records.procedure import BesideProcedure, ProcedureFlown
 from navbound.records.verdict import LEAST_SHARE, BeliefState, VerdictId
+
+
+def _listed(lead: Any) -> Any:
+    """Older runs keep the sentences as one text."""
+    return [lead] if isinstance(lead, str) else lead
 
 
 class Worst(Record):
@@ -106,8 +111,10 @@ class Verdict(Record):
     """What the id says of the requirement; None: nothing."""
     words: str
     """The verdict as sentences: what, how much, worst where and when, what was assumed, whether truth was known."""
-    lead: str = ""
-    """The same without what a page states beside it: the worst margins, the method that judged, the lateral bounds against truth."""
+    sentences: list[str] = Field(default_factory=list)
+    """The same one by one: first what, then why, the gravest first; empty in runs that are older than this field."""
+    lead: Annotated[list[str], BeforeValidator(_listed)] = Field(default_factory=list)
+    """Those without what a page states beside it: the worst margins, the method that judged, the lateral bounds against truth."""
     requirement: str
     method: str
     """Id of the method that judged, see `methods`."""

@@ -61,7 +61,9 @@ class Run:
         rows = [("epochs", str(self.table.height)), *((name, str(n)) for name, n in self.summary.n_status.items())]
         cells = "".join(f"<tr><td>{escape(name)}</td><td>{escape(n)}</td></tr>" for name, n in rows)
         report = "" if self.path is None else f"<p>Report: <code>{escape(str(self.path / REPORT))}</code></p>"
-        return f"<p><b>{escape(self.summary.title)}</b></p><p>{escape(verdict.words)}</p><table>{cells}</table>{report}"
+        first, *beside = verdict.sentences or [verdict.words]
+        why = "".join(f"<li>{escape(sentence)}</li>" for sentence in beside)
+        return f"<p><b>{escape(self.summary.title)}</b></p><p>{escape(first)}</p><ul>{why}</ul><table>{cells}</table>{report}"
 
     def save(self, out: str | Path) -> Run:
         """Write the run, with its report, to a folder of its own.

@@ -67,9 +67,12 @@ export function earnsGreen(v: Pick<Verdict, "id" | "assumed">): boolean {
 
 /** What the numbers beside it do not say; a machine finds the shares in it. */
 function lead(v: Verdict): HTMLElement {
-    const words = valueOf("share_inside", v.share_inside, v.lead || v.words);
+    const [first, ...beside] = [v.lead, v.sentences, [v.words]].find((each) => each.length > 0)!;
+    const words = valueOf("share_inside", v.share_inside, first!);
     words.classList.replace("value", "lead");
-    return el("p", { class: "words", "data-key": "share_contained", "data-value": v.share_contained ?? undefined }, words);
+    return el("div", { class: "words" },
+        el("p", { "data-key": "share_contained", "data-value": v.share_contained ?? undefined }, words),
+        beside.length > 0 ? el("ul", {}, ...beside.map((sentence) => el("li", {}, sentence))) : null);
 }
 
 function facts(payload: Payload, risk: number | undefined): HTMLElement {

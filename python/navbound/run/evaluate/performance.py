@@ -288,20 +288,20 @@ def _summary(result: Performance, parts: list[Stored], honesty: CovarianceConsis
     doubts = [doubt for part in parts for doubt in part.position_doubts]
     doubted = is_copied or n_worse > 0 or bool(doubts) or result.experimental == CONTRADICTED
     decided = rule.of_levels([_facts(each, result, doubted=doubted) for each in result.levels])
+    sentences = [
+        *levels_verdict(decided, result),
+        *([COPIED] if is_copied else []),
+        *(f"{doubt}." for doubt in doubts),
+        *beside_words(n_worse, unread),
+        *performance_words(result),
+        *unread_words(unread),
+    ]
     verdict = Verdict(
         id=decided,
         # A service level is no RNP: what its id says stands in the words.
         inside=None,
-        words=" ".join(
-            [
-                *levels_verdict(decided, result),
-                *([COPIED] if is_copied else []),
-                *(f"{doubt}." for doubt in doubts),
-                *beside_words(n_worse, unread),
-                *performance_words(result),
-                *unread_words(unread),
-            ]
-        ),
+        words=" ".join(sentences),
+        sentences=sentences,
         requirement=names,
         method="performance",
         share_inside=None,

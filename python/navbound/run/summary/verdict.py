@@ -153,9 +153,10 @@ def verdict_of(
         n_truth_doubted=material.truth_doubts.n,
         truth_doubts=material.truth_doubts.words,
     )
-    words, lead = verdict_words(verdict, judge, risks, material.covariance, material.labels)
+    sentences, lead = verdict_words(verdict, judge, risks, material.covariance, material.labels)
     of_levels = protection_words(protection)
-    return verdict.model_copy(update={"words": f"{words}{of_levels}", "lead": f"{lead}{of_levels}"})
+    sentences += of_levels
+    return verdict.model_copy(update={"words": " ".join(sentences), "sentences": sentences, "lead": [*lead, *of_levels]})
 
 
 def _scattered(material: Material, known: VerdictFacts, judging: str) -> list[str]:

@@ -36,18 +36,16 @@ HEADLINES: dict[VerdictId, str] = {
 
 def verdict_words(
     verdict: Verdict, judged: MethodResult, risks: tuple[float, float], covariance: CovarianceOrigin, labels: Mapping[str, str]
-) -> tuple[str, str]:
+) -> tuple[list[str], list[str]]:
     """What a navigator wants to know first, in sentences: all of them, and those whose numbers a page does not show beside them.
 
-    A track has its name of `labels`, as everywhere else.
+    First the verdict, then why, the gravest first, then what stands beside it. A track has its name of `labels`, as everywhere else.
     """
     assumed = _assumed(verdict, covariance)
     first = _first(verdict, risks)
     parts = [f"{assumed}: {first[0].lower()}{first[1:]}" if assumed else first]
     if verdict.id == "not_shown":
         parts += _not_shown(verdict)
-    parts += _reasons(verdict)
-    n_before_worst = len(parts)
     parts += [f"{doubt}." for doubt in verdict.position_doubts]
     parts += incomplete_words(verdict.beside)
     if verdict.n_implausible:
@@ -56,6 +54,8 @@ def verdict_words(
             "wrong as well."
         )
     parts += _contradicted(verdict)
+    parts += _reasons(verdict)
+    n_before_worst = len(parts)
     if verdict.n_long_steps and verdict.longest_step_s is not None:
         parts.append(
             f"Between epochs nothing is known: {counted(verdict.n_long_steps, 'step is', 'steps are')} longer than a position takes "
@@ -67,7 +67,7 @@ def verdict_words(
     worst = [] if verdict.worst_accuracy is None else [_worst(verdict.worst_accuracy, labels)]
     of_truth, of_truth_beside = truth_words(verdict), truth_words(verdict, beside_numbers=True)
     words = [*parts[:n_before_worst], *worst, *parts[n_before_worst:], judged_by, *of_truth]
-    return " ".join(words), " ".join([*parts, *of_truth_beside])
+    return words, [*parts, *of_truth_beside]
 
 
 def unread_words(unread: Sequence[str]) -> list[str]:
@@ -276,18 +276,17 @@ def _worst(worst: Worst, labels: Mapping[str, str]) -> str:
     )
 
 
-def protection_words(protection: list[ProtectionSummary]) -> str:
+def protection_words(protection: list[ProtectionSummary]) -> list[str]:
     """How protection levels stood against alert limits, and whether they bounded the true errors; nothing where there are none."""
     if not protection:
-        return ""
+        return []
     n = sum(p.n_epochs for p in protection)
     available = share(sum(p.share_available * p.n_epochs for p in protection) / n)
     provenance = ", ".join(sorted({p.hal_held for p in protection}))
     misleading = sum(p.n_misleading for p in protection)
-    truth = (
-        f" At {counted(misleading, 'epoch')} the true error is above the protection level: misleading information." if misleading else ""
-    )
-    return f" Protection level within the alert limit ({provenance}) at {available} of {counted(n, 'epoch')}.{truth}"
+    within = f"Protection level within the alert limit ({provenance}) at {available} of {counted(n, 'epoch')}."
+    above = f"At {counted(misleading, 'epoch')} the true error is above the protection level: misleading information."
+    return [within, *([above] if misleading else [])]
 
 
 def consistency_words(nees: Nees, pit: Pit, regions: Sequence[RegionCoverage] = ()) -> str:
