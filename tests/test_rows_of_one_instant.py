@@ -83,3 +83,24 @@ def test_pieces_of_any_length_find_the_same(tmp_path: Path, piece_rows: int) -> 
     n = sum(piece.height for piece in reading.epochs())
     assert (n, reading.left_out.height) == (N, 0)
     assert any(f"{N} rows without a position" in each for each in reading.notes)
+
+
+def hover(k: int, stamp: float) -> dict[str, Any]:
+    """A row of a vehicle that stands in the air, with noise of decimetres."""
+    noise = {"lat": 48.0 + (k * 7 % 11) * 3e-7, "lon": 2.0 + (k * 5 % 13) * 3e-7}
+    return row(0) | noise | {"now": START_S + stamp, "speed_mps": round(0.1 * (k * 3 % 7), 2), "track_deg": k % 360}
+
+
+@pytest.mark.parametrize("stands_s", [20, 45])
+@pytest.mark.parametrize("fraction", [0.0, 0.25])
+def test_a_vehicle_that_hovers_under_a_clock_that_stands_is_not_inside(tmp_path: Path, stands_s: int, fraction: float) -> None:
+    """A row a second, under a stamp that goes on each so many seconds: no time comes more often than others."""
+    run = of(tmp_path, [hover(k, k // stands_s * stands_s + fraction) for k in range(10 * stands_s)])
+    assert run.summary.verdict.id == "not_shown"
+    assert any("clock that stands" in reason for reason in repeated(run))
+
+
+def test_a_vehicle_that_hovers_under_whole_seconds_is_inside(tmp_path: Path) -> None:
+    """Twenty fixes a second, whose stamps are rounded."""
+    run = of(tmp_path, [hover(k, k // 20) for k in range(1200)])
+    assert run.summary.verdict.id == "inside"

@@ -49,6 +49,9 @@ BOUNDS = ("sigma_e_m", "sigma_n_m", "sigma_u_m", "epu_m", "rc_m", "nac_p", "nic"
 ERRORS = ("nse_e_m", "nse_n_m", "nse_u_m", "stated_error_m", "truth_h_m")
 """What a row states of its error, or of its true height. Two of one time are one as two positions are."""
 
+_MEASURED = ("est_lat_rad", "est_lon_rad", "est_h_m", "altitude_m", "ground_speed_mps", "ground_track_rad")
+"""What a receiver measures anew at each row."""
+
 _EAST, _NORTH, _UP = VARIANCES
 SIZES = dict(
     zip(COVARIANCE, ((_EAST, _EAST), (_EAST, _NORTH), (_NORTH, _NORTH), (_EAST, _UP), (_NORTH, _UP), (_UP, _UP)), strict=True),
@@ -148,7 +151,8 @@ def separate(epochs: pl.DataFrame, *, whole_seconds: bool = False, usual: int = 
     if not epochs.select(again.any()).item():
         return Repeats(epochs, {})
     flown = _flown(epochs, key) if whole_seconds else pl.lit(value=False)
-    epochs = _later_first(epochs.with_columns(_hazard(epochs).alias("__hazard"), flown.alias("__flown")), key)
+    stands = _stands(epochs, key, whole_seconds=whole_seconds)
+    epochs = _later_first(epochs.with_columns(_hazard(epochs).alias("__hazard"), flown.alias("__flown"), stands.alias("__stands")), key)
     epochs = _with_every_alert(_gravest_first(epochs, key), key)
     place, bound = _other_place(epochs, key) & ~pl.col("__flown"), _other_bound(epochs, key)
     status_differs = _differs("status", key) if "status" in epochs.columns else pl.lit(value=False)
@@ -159,7 +163,7 @@ def separate(epochs: pl.DataFrame, *, whole_seconds: bool = False, usual: int = 
     # The kept row of the time is one more.
     heaped = pl.len().over(key) + 1 >= HEAPED * usual
     words = (
-        pl.when(heaped & pl.col("__place").any().over(key))
+        pl.when((heaped & pl.col("__place").any().over(key)) | pl.col("__stands"))
         .then(pl.lit(STANDS))
         .when(pl.any_horizontal("__place", "__bound", "__status"))
         .then(pl.lit(OTHERWISE))
@@ -174,6 +178,24 @@ def separate(epochs: pl.DataFrame, *, whole_seconds: bool = False, usual: int = 
     return Repeats(kept, {name: rows for name, rows in rows_of.items() if not rows.is_empty()})
 
 
+def _stands(epochs: pl.DataFrame, key: list[str], *, whole_seconds: bool) -> pl.Expr:
+    """Rows of a time at which `HEAPED` and more were measured, no two of which are the same.
+
+    Logs that are joined repeat a row, however often, and a vehicle that hovers under a clock that stands has noise. Whole seconds that go
+    on are rounded.
+    """
+    measured = [name for name in _MEASURED if name in epochs.columns]
+    if not measured:
+        return pl.lit(value=False)
+    several = pl.struct(measured).n_unique().over(key) >= HEAPED
+    if not whole_seconds:
+        return several
+    times = epochs.select(key).unique(maintain_order=True).with_columns(next_ns=pl.col("time_ns").shift(-1).over("track"))
+    next_ns = epochs.select(key).join(times, on=key, how="left", maintain_order="left")["next_ns"]
+    rounded = (pl.lit(next_ns) - pl.col("time_ns") <= int(STEP_S * 1e9)).fill_null(value=True)
+    return several & ~rounded
+
+
 def _completed(epochs: pl.DataFrame, key: list[str]) -> pl.DataFrame:
     """What one row of a time leaves empty is what another of it states, and of two speeds the larger: no row speaks for nothing."""
     numbers = [name for name, kind in epochs.schema.items() if kind.is_numeric() and name not in key]
@@ -182,7 +204,7 @@ def _completed(epochs: pl.DataFrame, key: list[str]) -> pl.DataFrame:
     return epochs.with_columns(*others, *speed)
 
 
-_MARKS = ("__again", "__place", "__bound", "__status", "__hazard", "__flown")
+_MARKS = ("__again", "__place", "__bound", "__status", "__hazard", "__flown", "__stands")
 _UNKNOWN_BOUND = pl.col("__bound") & ~pl.col("__hazard")
 _REASON = pl.struct(
     reason_id=pl.when("__place").then(pl.lit("position_jump")).when(_UNKNOWN_BOUND).then(pl.lit("invalid_number")),
