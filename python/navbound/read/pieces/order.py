@@ -35,6 +35,7 @@ class Pieces:
         self._spool = Spool()
         self._places: list[list[tuple[int, int]]] = [[] for _ in range(len(self._starts) + 1)]
         self._spans: dict[str, tuple[int, int]] = {}
+        self._schema: dict[str, pl.DataType] = {}
 
     def _keys(self, rows: pl.DataFrame) -> NDArray[np.complex128]:
         """Numbers in the order of track and time: complex ones are compared by their parts. Close times may become one."""
@@ -45,6 +46,7 @@ class Pieces:
 
     def put(self, rows: pl.DataFrame) -> None:
         """The next rows, in the order of the file."""
+        self._schema |= {name: dtype for name, dtype in rows.schema.items() if name not in self._schema}
         marked = rows.with_columns(pl.Series("__piece", np.searchsorted(self._starts, self._keys(rows), side="right")))
         for track, low, high in marked.group_by("track").agg(low=pl.col("__piece").min(), high=pl.col("__piece").max()).iter_rows():
             before = self._spans.get(track, (low, high))
@@ -66,8 +68,14 @@ class Pieces:
 
     def piece(self, index: int) -> pl.DataFrame:
         """The rows of a piece in the order of track, time and file; no columns where there are no rows."""
-        parts = [self._spool.get(place) for place in self._places[index]]
+        parts = [self._whole(self._spool.get(place)) for place in self._places[index]]
         return pl.concat(parts).sort("track", "time_ns", maintain_order=True) if parts else pl.DataFrame()
+
+    def _whole(self, part: pl.DataFrame) -> pl.DataFrame:
+        """A part with the columns of all: what no row of it states is stated elsewhere, and a status that none doubts is good."""
+        lacking = {name: dtype for name, dtype in self._schema.items() if name not in part.columns}
+        added = [pl.lit("ok" if name == "status" else None, dtype).alias(name) for name, dtype in lacking.items()]
+        return part.with_columns(added).select(list(self._schema))
 
     def __iter__(self) -> Iterator[pl.DataFrame]:
         """Every piece that has rows."""
