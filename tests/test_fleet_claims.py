@@ -150,3 +150,32 @@ def test_whose_a_position_is_says_a_table_as_a_live_source_does(tmp_path: Path, 
     stated = statements.stated(kind, pl.Series([source]))
     assert (stated.against[0] is not None) == (epochs["reason_id"][0] == "foreign_position")
     assert stated.unknown == []
+
+
+@pytest.mark.parametrize(
+    ("age", "reason"),
+    [
+        ({"seen_pos": 0.9}, None),
+        ({"seen_pos": 1.5}, "position_held"),
+        ({"seen_pos": 40.0}, "position_stale"),
+        ({"seen_pos": 0.1, "seen": 40.0}, "position_stale"),
+        ({"seen": 40.0}, "position_stale"),
+        ({"seen": 0.5}, None),
+    ],
+    ids=str,
+)
+def test_a_position_is_as_old_as_its_line_says(tmp_path: Path, age: dict[str, float], reason: str | None) -> None:
+    """As in a recording of the same lines (tests/test_read_readsb.py)."""
+    lines = [LINE | {"now": UNIX_S + k, "gs": 155.5, "lat": 48.9 + k * 80.0 / 111_195} | {"seen_pos": None} | age for k in range(30)]
+    epochs = tables.epochs(session(tmp_path, lines))
+    assert set(epochs["reason_id"]) == {reason}
+
+
+def test_a_radius_counts_before_its_category(tmp_path: Path) -> None:
+    epochs = tables.epochs(session(tmp_path, [{"rc": 900}, {"hex": "4ca124", "rc": 0}]))
+    assert epochs["integrity_compared_m"][0] == pytest.approx(900.0)
+    assert epochs["reason_id"].to_list() == [None, "no_integrity_claim"]
+
+
+def test_a_line_that_says_that_gps_was_lost_is_not_believed(tmp_path: Path) -> None:
+    assert tables.epochs(session(tmp_path, [{"gpsOkBefore": UNIX_S - 10.0}]))["status"].to_list() == ["invalid_input"]

@@ -69,6 +69,14 @@ AGAINST: list[dict[str, object]] = [
     {"navSource": "IRS"},
     {"is_suspicious": 1},
     {"position_latency_ms": 35000},
+    {"info": '{"status": "ok", "integrity": "FAILED"}'},
+    {"aux": {"type": "Point", "coordinates": [12.5, 48.0]}},
+    {"aux": '{"type": "Point", "coordinates": [12.5, 48.0]}'},
+    {"aux": "SRID=4326;POINT(12.5 48.0)"},
+    {"aux": "+48.0000+012.5000/"},
+    {"aux": "48 0.0 N 12 30.0 E"},
+    {"geom": [48.0, 12.5]},
+    {"gps_position": "48.01, 12.52"},
 ]
 NOT_AGAINST: list[dict[str, object]] = [
     {"alerts": []},
@@ -81,6 +89,12 @@ NOT_AGAINST: list[dict[str, object]] = [
     {"flags": ["healthy"]},
     {"wind": {"speed": 10, "from": 200}},
     {"sensors": [{"valid": True}]},
+    {"info": '{"wind": 3, "integrity": "normal"}'},
+    {"aux": {"type": "Point", "coordinates": [1.72, 48.71]}},
+    {"aux": "48 42.5 N 1 43.2 E"},
+    {"destination": "SRID=4326;POINT(12.5 48.0)"},
+    {"levels": [48.0, 12.5]},
+    {"geom": [0.0, 0.0]},
 ]
 
 

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 import navbound
+from navbound import _core, live
+from navbound.errors import FormatError
+from navbound.live.settings import Settings
+from navbound.live.sinks import tables
 from navbound.read.pieces import read_pieces
 from navbound.read.tables.epochs import read
 from navbound.run.directory import Run
@@ -29,7 +34,17 @@ def analyzed(*args: object) -> Run:
 
 @pytest.mark.parametrize(
     ("name", "usual", "number"),
-    [("speed_mps", 80.0, 9999), ("gs", 155.5, 9999), ("gs", 155.5, 1023), ("gs", 155.5, 999), ("speed", 80.0, 9999)],
+    [
+        ("speed_mps", 80.0, 9999),
+        ("gs", 155.5, 9999),
+        ("gs", 155.5, 1023),
+        ("gs", 155.5, 999),
+        ("speed", 80.0, 9999),
+        ("speed_mps", 80.0, 655.35),
+        ("speed_mps", 80.0, -1),
+        ("gs", 155.5, -1),
+        ("speed", 80.0, -1),
+    ],
 )
 @pytest.mark.parametrize("at", [lambda k: k % 20 == 3, lambda k: 100 <= k < 140], ids=["now and then", "together"])
 def test_a_number_that_is_no_speed_is_not_stated(tmp_path: Path, name: str, usual: float, number: int, at: Callable[[int], bool]) -> None:
@@ -62,6 +77,37 @@ def test_a_column_of_which_much_is_no_speed_leaves_nothing_shown(tmp_path: Path)
     run = analyzed(tmp_path, lambda k: 9999 if k % 4 == 3 else SPEED_MPS)
     assert run.summary.verdict.id == "not_shown"
     assert "75 of 300 numbers of “speed_mps” are no speed that an aircraft has" in " ".join(run.summary.verdict.position_doubts)
+
+
+@pytest.mark.parametrize("name", ["speed_mps", "speed"])
+def test_what_is_below_any_length_is_not_stated_however_often(tmp_path: Path, name: str) -> None:
+    """-1 is written where an empty field could stand, and says nothing of the unit of the others."""
+    run = analyzed(tmp_path, lambda k: -1 if k % 3 == 0 else SPEED_MPS, name)
+    assert run.summary.verdict.id == "inside"
+    assert [(each.count, each.example) for each in run.summary.rejected] == [(100, "-1")]
+
+
+def test_other_numbers_below_zero_are_malformed(tmp_path: Path) -> None:
+    with pytest.raises(FormatError):
+        analyzed(tmp_path, lambda k: -80 if k % 3 == 0 else SPEED_MPS)
+
+
+@pytest.mark.parametrize("number", [1023.0, -1.0, 655.35, 999.9, 9999.0])
+def test_live_takes_the_same_numbers_as_not_stated(tmp_path: Path, number: float) -> None:
+    record = {"v": 1, "track": "A", "est_lon_rad": 0.03, "sigma_m": 5.0}
+    lines = [
+        record
+        | {
+            "time_ns": 1_317_644_000_000_000_000 + k * 1_000_000_000,
+            "est_lat_rad": 0.7 + k * SPEED_MPS / 6_371_000,
+            "ground_speed_mps": number if k % 20 == 3 else SPEED_MPS,
+        }
+        for k in range(N)
+    ]
+    session = live.Session(tmp_path / "out", Settings(format="json", rnp_m=555.6))
+    session.take(_core.live_input("chunk", None, b"".join(json.dumps(each).encode() + b"\n" for each in lines)))
+    session.finish()
+    assert set(tables.epochs(tmp_path / "out")["reason_id"]) == {None}
 
 
 @pytest.mark.parametrize("at", [lambda k: 100 <= k < 150, lambda k: k % 20 == 3], ids=["together", "now and then"])

@@ -370,3 +370,43 @@ def test_columns_whose_names_differ_in_writing_alone_are_refused(tmp_path: Path,
 def test_a_deviation_under_any_of_its_names_is_weighed(tmp_path: Path, name: str, value: float, beyond: bool) -> None:
     verdict = stating(tmp_path, name, 5.0 if "nm" not in name else 0.003, value)
     assert (verdict.id, verdict.n_stated_beyond) == (("not_shown", 100) if beyond else ("inside", 0))
+
+
+def in_objects(tmp_path: Path, name: str, fine: str, bad: str, piece_rows: int | None = None) -> Verdict:
+    """Objects of JSON in the fields of a text table."""
+    cells = [bad if BAD.start <= k < BAD.stop else fine for k in range(N)]
+    return navbound.analyze(table(tmp_path / "a.csv", N, added={name: cells}), piece_rows=piece_rows).summary.verdict
+
+
+OBJECTS = [
+    ("info", '{"status":"ok","integrity":"normal"}', '{"status":"ok","integrity":"FAILED"}'),
+    ("health", '{"status":"ok"}', '{"status":"ok","integrity":"FAILED"}'),
+    ("info", '{"alert":"none","raim":"ok"}', '{"alert":"none","raim":"fault"}'),
+    ("info", '{"note":"no remarks"}', '{"note":"no remarks","gps":"GPS PRIMARY LOST"}'),
+    ("flags", '{"is_ok":true,"spoofed":false}', '{"is_ok":true,"spoofed":true}'),
+    ("info", '{"receiver":{"valid":true,"name":"a"}}', '{"receiver":{"valid":false,"name":"a"}}'),
+    ("info", '[{"valid":true,"of":"a"},{"valid":true,"of":"b"}]', '[{"valid":true,"of":"a"},{"valid":false,"of":"none"}]'),
+    ("info", "{'valid': True, 'mode': 'GNSS'}", "{'valid': False, 'mode': 'GNSS'}"),
+]
+
+
+@pytest.mark.parametrize(("name", "fine", "bad"), OBJECTS)
+def test_each_key_of_an_object_in_a_field_is_heard(tmp_path: Path, name: str, fine: str, bad: str) -> None:
+    verdict = in_objects(tmp_path, name, fine, bad)
+    assert verdict.id == "not_shown"
+    assert in_objects(tmp_path, name, fine, bad, piece_rows=70).id == "not_shown"
+    assert in_objects(tmp_path, name, fine, bad, piece_rows=70).n_judged == verdict.n_judged
+
+
+@pytest.mark.parametrize(("name", "fine"), [(name, fine) for name, fine, _ in OBJECTS if name != "health"])
+def test_keys_of_objects_that_say_nothing_against_a_position_leave_it(tmp_path: Path, name: str, fine: str) -> None:
+    assert in_objects(tmp_path, name, fine, fine).id == "inside"
+
+
+def test_an_alarm_in_one_piece_alone_is_one(tmp_path: Path) -> None:
+    """A text that is no statement in most pieces: it ended as a bug of navbound."""
+    words = ["GPS PRIMARY LOST" if k == N // 2 else "cruise" for k in range(N)]
+    path = table(tmp_path / "a.csv", N, added={"remark": words})
+    whole = navbound.analyze(path).summary.verdict
+    assert (whole.id, whole.n_stated_alert) == ("not_shown", 1)
+    assert navbound.analyze(path, piece_rows=47).summary.verdict == whole

@@ -213,14 +213,16 @@ def test_of_two_speeds_the_larger_counts(tmp_path: Path) -> None:
         assert verdict.id != "inside", moving
 
 
-@pytest.mark.parametrize(("off_deg", "doubted"), [(0.0, False), (0.0005, False), (0.02, True)])
+@pytest.mark.parametrize(("off_deg", "doubted", "worse"), [(0.0, False, 0), (0.00005, False, 0), (0.0005, False, N), (0.02, True, N)])
 @pytest.mark.parametrize("name", ["latitude", "lat", "Latitude"])
-def test_two_columns_of_one_latitude_must_agree(tmp_path: Path, name: str, off_deg: float, doubted: bool) -> None:
-    """0.0005 degrees are 56 m, 0.02 degrees 2.2 km."""
+def test_two_columns_of_one_latitude_must_agree(tmp_path: Path, name: str, off_deg: float, doubted: bool, worse: int) -> None:
+    """0.00005 degrees are 6 m, as much as a radius of 10 m explains; 0.0005 degrees 56 m, 0.02 degrees 2.2 km."""
     table = [row | {name: row["lat_deg"] + off_deg} for row in rows()]
-    verdict = analyzed(tmp_path, table).summary.verdict
+    run = analyzed(tmp_path, table)
+    verdict = run.summary.verdict
     assert any("two columns of one quantity" in each for each in verdict.position_doubts) == doubted
-    assert verdict.id == ("not_shown" if doubted else "inside")
+    assert (verdict.id, verdict.n_stated_worse) == ("not_shown" if worse else "inside", worse)
+    assert any("up to 55.6 m apart" in each for each in run.summary.assumptions) == (off_deg == 0.0005)
     path = tmp_path / "a.json"
     assert navbound.analyze(path, columns={"est_lat_rad": "lat_deg:deg"}).summary.verdict.id == "inside"
 
@@ -246,6 +248,10 @@ def _ddmm(degrees: float, letters: str) -> str:
     return f"{int(abs(degrees))}{abs(degrees) % 1 * 60:07.4f}{letters[degrees < 0]}"
 
 
+def _minutes(degrees: float) -> str:
+    return f"{int(degrees)} {degrees % 1 * 60:.4f}"
+
+
 FORMS: dict[str, Callable[[float, float], dict[str, Any]]] = {
     "integers of 1e-7 degrees": lambda lat, lon: {"gps_lat_e7": round(lat * 1e7), "gps_lon_e7": round(lon * 1e7)},
     "semicircles": lambda lat, lon: {"gps_lat_semi": round(lat / 180 * 2**31), "gps_lon_semi": round(lon / 180 * 2**31)},
@@ -260,6 +266,18 @@ FORMS: dict[str, Callable[[float, float], dict[str, Any]]] = {
     "three numbers": lambda lat, lon: {"geom": f"SRID=4326;POINT Z ({lon:.7f} {lat:.7f} 100.0)"},
     "Earth-fixed axes in kilometres": lambda lat, lon: dict(zip(("X_km", "Y_km", "Z_km"), [m / 1e3 for m in _ecef(lat, lon)], strict=True)),
     "degrees and minutes in one number": lambda lat, lon: {"nmea_lat": _ddmm(lat, "NS"), "nmea_lon": _ddmm(lon, "EW")},
+    "Earth-fixed axes in centimetres": lambda lat, lon: dict(
+        zip(("ecefX", "ecefY", "ecefZ"), [round(1e2 * m) for m in _ecef(lat, lon)], strict=True)
+    ),
+    "ISO 6709 under any name": lambda lat, lon: {"annotation": f"{lat:+011.7f}{lon:+012.7f}/"},
+    "ISO 6709 with minutes": lambda lat, lon: {"gps_place": f"+{_ddmm(lat, '  ').strip()}+00{_ddmm(lon, '  ').strip()}/"},
+    "degrees and minutes in one field": lambda lat, lon: {"gps": f"{_minutes(lat)} N {_minutes(lon)} E"},
+    "hemispheres in front": lambda lat, lon: {"aux": f"N{_minutes(lat)}' E{_minutes(lon)}'"},
+    "a point under any name": lambda lat, lon: {"aux": f"SRID=4326;POINT({lon:.7f} {lat:.7f})"},
+    "GeoJSON in a text": lambda lat, lon: {"aux": json.dumps({"type": "Point", "coordinates": [lon, lat]})},
+    "GeoJSON": lambda lat, lon: {"aux": {"type": "Point", "coordinates": [lon, lat]}},
+    "an object in a text": lambda lat, lon: {"aux": json.dumps({"gnss": {"lat": lat, "lon": lon}, "n": 1})},
+    "an object of another language": lambda lat, lon: {"aux": str({"lat": lat, "lng": lon, "ok": True})},
     "in one word": lambda lat, lon: {"truelat": lat, "truelon": lon},
     "in another language": lambda lat, lon: {"latitud_real": lat, "longitud_real": lon},
 }
@@ -292,6 +310,11 @@ def test_another_place_in_any_form_is_compared(tmp_path: Path, form: str, off_de
         {"gps_lat": "n/a", "gps_lon": ""},
         {"accel_x": 0.1, "accel_y": 0.2, "accel_z": 9.8},
         {"gps_pos": []},
+        {"destination": "SRID=4326;POINT(11.5 48.1)"},
+        {"aux": json.dumps({"dest": {"lat": 48.1, "lon": 11.5}, "wind": [3.5, 2.5]})},
+        {"aux": "+33 1 42 68 53 00"},
+        {"aux": "N3 E5"},
+        {"aux": "{"},
     ],
 )
 def test_what_is_no_place_of_the_vehicle_contradicts_nothing(tmp_path: Path, more: dict[str, Any]) -> None:

@@ -226,7 +226,8 @@ _Reports = tuple[NDArray[np.int64], NDArray[np.int64], _F, _F, _F]
 
 SPEEDS_BESIDE: int
 TURNING_MPS2: float
-LIVE_BALANCE: tuple[float, float, float, float]
+FASTEST_MPS: float
+NO_SPEED_BELOW_ANY: float
 GGA_QUALITIES: list[int]
 DETERMINING_SATELLITES: int
 MOST_DILUTION: float
@@ -242,6 +243,20 @@ def neighbours_apart(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
 
 RTKLIB_QUALITIES: list[int]
+
+def no_speeds(written: NDArray[np.float64], unit_mps: float) -> NDArray[np.bool_]: ...
+def places_of(texts: list[str | None]) -> list[tuple[list[float], bool, bool] | None]: ...
+
+class TrackBalance:
+    def __init__(self) -> None: ...
+    def see(
+        self,
+        time_ns: NDArray[np.int64],
+        lat_rad: NDArray[np.float64],
+        lon_rad: NDArray[np.float64],
+        speed_mps: NDArray[np.float64],
+    ) -> None: ...
+    def behind_m(self) -> tuple[float, float] | None: ...
 
 class PlausibleTrack:
     def __init__(self, limits: dict[str, float], reports_speed: bool) -> None: ...

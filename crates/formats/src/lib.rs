@@ -6,6 +6,7 @@ pub mod measured;
 pub mod mode_s;
 mod order;
 pub mod packed;
+pub mod place;
 pub mod precise;
 pub mod receiver;
 pub mod refusal;

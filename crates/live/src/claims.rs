@@ -55,6 +55,17 @@ impl Claims {
         self.bounds_within(claim, of(&self.containment_m, claim.nic))
     }
 
+    /// The bounds of a claim beside which a radius of containment stands \[m\]: by the rule of recordings it counts before the category, one
+    /// of 0 is none, and beside a category that is none no radius is one.
+    ///
+    /// # Errors
+    /// What is not claimed.
+    pub(crate) fn bounds_beside(&self, claim: Claim, radius_m: Option<f64>) -> Result<Bounds, Reason> {
+        let Some(radius_m) = radius_m else { return self.bounds(claim) };
+        let contained = radius_m > 0.0 && radius_m.is_finite() && claim.nic != Some(0);
+        self.bounds_within(claim, contained.then_some(radius_m))
+    }
+
     /// The bounds of a claim whose radius of containment is known more closely than by its category \[m\].
     ///
     /// # Errors

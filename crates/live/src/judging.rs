@@ -1,6 +1,5 @@
 //! One released record under the judge of its track.
 
-use crate::balance::{At, Balance};
 use crate::order::Arrived;
 use crate::output::{EpochOut, Kind, Output, Transition, Turn};
 use crate::position::{Position, TrackId};
@@ -9,6 +8,7 @@ use crate::track::Track;
 use navbound_core::bound::{AlertBound, anp};
 use navbound_core::frame::{Covariance, LatLon, counts_as_zero};
 use navbound_core::judge::{Evaluated, Judged, Sample};
+use navbound_core::monitor::balance::{At, Balance};
 use navbound_core::monitor::motion::{Finding, Motion, Report};
 use navbound_core::monitor::neighbours::{Height, Neighbours, Place};
 use navbound_core::monitor::rnp::{Acceptance, Event};
@@ -124,7 +124,9 @@ fn believed(settings: &Settings, track: &mut Track, position: &Position) -> Posi
         height: position.h_m.filter(|h_m| h_m.is_finite()).map(up),
     };
     // A place off the Earth is refused where it is projected, or is no covariance's.
-    let finding = track.motion.see(&report, &settings.motion).map_or(Some(Reason::InvalidNumber), Finding::reason);
+    let aged = Report { time: position.time.plus_seconds(position.age_s), fixed: Some(position.time), ..report };
+    let finding = track.motion.see(&report, &settings.motion).map(|finding| aged.with_age(finding, &settings.motion));
+    let finding = finding.map_or(Some(Reason::InvalidNumber), Finding::reason);
     let mut restless = || {
         let place = Place { time: position.time, lat_rad, lon_rad, variance_m2: variance_m2? };
         track.neighbours.contradict(place, settings.motion.stale_after_s).then_some(Reason::NeighboursContradict)
@@ -133,8 +135,11 @@ fn believed(settings: &Settings, track: &mut Track, position: &Position) -> Posi
     let reason = if finding == Some(Reason::PositionLate) { restless().or(finding) } else { finding.or_else(restless) };
     // What is doubted by itself is no part of the way; the time goes on over it. What is behind stays so where it is held besides.
     let behind = match reason {
-        None => track.balance.see(At { time_ns: position.time.nanoseconds(), lat_rad, lon_rad, speed_mps }),
-        Some(reason) => reason.status().usable() && track.balance.behind(),
+        None => {
+            track.balance.see(At { time_ns: position.time.nanoseconds(), lat_rad, lon_rad, speed_mps });
+            track.balance.behind_m().is_some()
+        }
+        Some(reason) => reason.status().usable() && track.balance.behind_m().is_some(),
     };
     let reason = if behind { Some(Reason::PositionStale) } else { reason };
     reason.map_or(*position, |reason| position.without(reason))

@@ -10,7 +10,6 @@
 //! docs/methods/live.md says what an alert means.
 
 mod assumed;
-pub mod balance;
 mod claims;
 mod codec;
 mod counters;

@@ -42,6 +42,8 @@ pub struct Position {
     pub track: TrackId,
     /// Time of applicability.
     pub time: GpsTime,
+    /// How old the position was when its source reported it \[s\]; 0 where it does not say so.
+    pub age_s: f64,
     /// Whether the position may be used.
     pub status: Status,
     /// Why it has this status, where that is not the source's own word.
@@ -111,6 +113,7 @@ impl Position {
         Self {
             track,
             time,
+            age_s: 0.0,
             status: Status::Ok,
             reason: None,
             lat_rad: None,
@@ -162,6 +165,7 @@ impl Position {
     pub(crate) fn write(&self, to: &mut Writer) {
         self.track.write(to);
         to.i64(self.time.nanoseconds());
+        to.f64(self.age_s);
         to.u8(self.status as u8);
         to.option(self.reason, |to, reason| to.u8(reason as u8));
         let numbers = [self.lat_rad, self.lon_rad, self.h_m, self.fte_m, self.course_rad, self.ground_speed_mps, self.hpl_m, self.rnp_m];
@@ -171,7 +175,7 @@ impl Position {
     }
 
     pub(crate) fn read(from: &mut Reader<'_>) -> Result<Self, Damaged> {
-        let (track, time) = (TrackId::read(from)?, GpsTime::from_nanoseconds(from.i64()?));
+        let (track, time, age_s) = (TrackId::read(from)?, GpsTime::from_nanoseconds(from.i64()?), from.f64()?);
         let status = status(from)?;
         let reason = from.option(reason)?;
         let mut number = || from.option(Reader::f64);
@@ -188,6 +192,7 @@ impl Position {
         Ok(Self {
             track,
             time,
+            age_s,
             status,
             reason,
             lat_rad,

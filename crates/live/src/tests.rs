@@ -35,6 +35,7 @@ fn settings() -> Settings {
                     vec!["lon".into(), "longitude".into()],
                     vec!["dest".into(), "airport".into()],
                     vec!["irs".into()],
+                    vec!["geom".into(), "coordinates".into()],
                 ],
                 [1852.0, 18_520.0],
             ),

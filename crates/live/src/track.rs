@@ -1,13 +1,13 @@
 //! State of one track.
 
 use crate::assumed::Stated;
-use crate::balance::Balance;
 use crate::codec::{Damaged, Reader, Writer};
 use crate::order::Waiting;
 use crate::output::Kind;
 use navbound_core::frame::EcefPosition;
 use navbound_core::judge::{self, Judge};
 use navbound_core::monitor::ahead::{Ahead, Reached};
+use navbound_core::monitor::balance::{At, Balance, Window};
 use navbound_core::monitor::motion::{LastSpeed, Motion, Report};
 use navbound_core::monitor::neighbours::{Height, Neighbours, Place};
 use navbound_core::monitor::standing::{Fall, Gone, Owed, Resumed, Stood};
@@ -144,7 +144,7 @@ impl Track {
                 [place.lat_rad, place.lon_rad, place.variance_m2].into_iter().for_each(|number| to.f64(number));
             });
         }
-        self.balance.write(to);
+        balance(to, &self.balance);
         self.waiting.write(to);
         to.flag(self.states_rnp);
         to.option(self.stated.largest_m2, Writer::f64);
@@ -210,7 +210,7 @@ impl Track {
             Ok(Place { time, lat_rad: from.f64()?, lon_rad: from.f64()?, variance_m2: from.f64()? })
         };
         let neighbours = Neighbours { last: [from.option(place)?, from.option(place)?] };
-        let (balance, waiting) = (Balance::read(from)?, Waiting::read(from)?);
+        let (balance, waiting) = (read_balance(from)?, Waiting::read(from)?);
         let states_rnp = from.flag()?;
         let stated = Stated { largest_m2: from.option(Reader::f64)?, lost: from.flag()? };
         let silent = from.flag()?;
@@ -257,4 +257,32 @@ fn height(to: &mut Writer, height: Height) {
 
 fn read_height(from: &mut Reader<'_>) -> Result<Height, Damaged> {
     Ok(Height { h_m: from.f64()?, variance_m2: from.f64()? })
+}
+
+fn balance(to: &mut Writer, balance: &Balance) {
+    to.option(balance.window, |to, window| {
+        for at in [window.begin, window.spoken, window.leg, window.last] {
+            to.i64(at.time_ns);
+            [at.lat_rad, at.lon_rad, at.speed_mps].into_iter().for_each(|number| to.f64(number));
+        }
+        to.i64(window.longest_ns);
+        window.moved_m.into_iter().chain(window.reported_m).for_each(|number| to.f64(number));
+    });
+    balance.ways_m.into_iter().for_each(|number| to.f64(number));
+}
+
+fn read_balance(from: &mut Reader<'_>) -> Result<Balance, Damaged> {
+    let at = |from: &mut Reader<'_>| Ok(At { time_ns: from.i64()?, lat_rad: from.f64()?, lon_rad: from.f64()?, speed_mps: from.f64()? });
+    let window = from.option(|from| {
+        Ok(Window {
+            begin: at(from)?,
+            spoken: at(from)?,
+            leg: at(from)?,
+            last: at(from)?,
+            longest_ns: from.i64()?,
+            moved_m: [from.f64()?, from.f64()?],
+            reported_m: [from.f64()?, from.f64()?],
+        })
+    })?;
+    Ok(Balance { window, ways_m: [from.f64()?, from.f64()?] })
 }

@@ -9,7 +9,6 @@ use navbound_core::judge;
 use navbound_core::monitor::motion::Limits;
 use navbound_core::monitor::rnp::{self, Chain};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Risk};
-use navbound_live::balance;
 use navbound_live::journal::{self, Next};
 use navbound_live::{
     Assigned, Assumed, CATEGORIES, Claims, Course, EpochOut, Format, Input, Lane, Output, PlaceWords, Settings, Splitter, StatementRow,
@@ -305,7 +304,6 @@ fn live_frames(frames: &[u8]) -> (Vec<usize>, &'static str) {
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
-    m.add("LIVE_BALANCE", (balance::FAST_MPS, balance::STRAIGHT, balance::LACK_M, balance::LACK_SHARE))?;
     m.add_function(wrap_pyfunction!(live_input, m)?)?;
     m.add_function(wrap_pyfunction!(live_inputs, m)?)?;
     m.add_function(wrap_pyfunction!(live_frames, m)?)?;

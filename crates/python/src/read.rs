@@ -3,11 +3,13 @@
 use crate::error::{format_error, input_error};
 use navbound_assess::error::navigation_errors;
 use navbound_assess::plausible::{Finding, Limits, Report, SPEEDS_BESIDE, Survey, Track};
+use navbound_core::monitor::balance::{At, Balance};
 use navbound_core::monitor::neighbours::{self, Apart, Place};
+use navbound_core::monitor::no_speed;
 use navbound_core::monitor::way::TURNING_MPS2;
 use navbound_core::quantity::{GpsTime, OutOfDomain};
 use navbound_formats::packed::{Limit, unpack_within};
-use navbound_formats::{measured, rtklib, time};
+use navbound_formats::{measured, place, rtklib, time};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -264,6 +266,56 @@ fn triples<'a>(array: &'a PyReadonlyArray2<'_, f64>) -> PyResult<&'a [[f64; 3]]>
     Ok(rows)
 }
 
+/// The ways of tracks, of the positions and by their speeds, for as long as a recording lasts.
+#[pyclass(module = "navbound._core")]
+#[derive(Default)]
+struct TrackBalance(Balance);
+
+#[pymethods]
+impl TrackBalance {
+    #[new]
+    fn new() -> Self {
+        Self::default()
+    }
+
+    /// The next rows of the track, in the order of time; NaN where no speed is stated.
+    fn see(
+        &mut self,
+        time_ns: PyReadonlyArray1<'_, i64>,
+        lat_rad: PyReadonlyArray1<'_, f64>,
+        lon_rad: PyReadonlyArray1<'_, f64>,
+        speed_mps: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<()> {
+        let rows = time_ns.as_slice()?.iter().zip(lat_rad.as_slice()?).zip(lon_rad.as_slice()?).zip(speed_mps.as_slice()?);
+        for (((time_ns, lat_rad), lon_rad), speed_mps) in rows {
+            self.0.see(At { time_ns: *time_ns, lat_rad: *lat_rad, lon_rad: *lon_rad, speed_mps: *speed_mps });
+        }
+        Ok(())
+    }
+
+    /// By how much the positions are behind where that is more than they may be, and the way by the speeds [m].
+    fn behind_m(&self) -> Option<(f64, f64)> {
+        self.0.behind_m().map(|lack_m| (lack_m, self.0.ways_m[1]))
+    }
+}
+
+/// Which numbers are no speed over the ground, in a unit [m/s].
+#[pyfunction]
+fn no_speeds<'py>(py: Python<'py>, written: PyReadonlyArray1<'py, f64>, unit_mps: f64) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    let none: Vec<bool> = written.as_slice()?.iter().map(|each| no_speed::is_no_speed(*each, unit_mps)).collect();
+    Ok(none.into_pyarray(py))
+}
+
+/// Places as they are written: two numbers [deg], whether the first is the latitude, and whether the form says that it is a place.
+type PlaceRow = Option<([f64; 2], bool, bool)>;
+
+/// The places that texts are.
+#[pyfunction]
+fn places_of(texts: Vec<Option<String>>) -> Vec<PlaceRow> {
+    let of = |text: &String| place::of_text(text).map(|written| (written.deg, written.ordered, written.by_itself));
+    texts.iter().map(|text| text.as_ref().and_then(of)).collect()
+}
+
 fn rows<'py, const N: usize>(py: Python<'py>, rows: &[[f64; N]]) -> PyResult<Bound<'py, PyArray2<f64>>> {
     use numpy::PyArrayMethods;
     rows.as_flattened().to_vec().into_pyarray(py).reshape([rows.len(), N])
@@ -291,5 +343,10 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("DETERMINING_SATELLITES", measured::DETERMINING_SATELLITES)?;
     m.add("MOST_DILUTION", navbound_core::solution::plausible::DILUTION)?;
     m.add("RTKLIB_QUALITIES", numbers(measured::RTKLIB_QUALITIES))?;
+    m.add("FASTEST_MPS", no_speed::FASTEST_MPS)?;
+    m.add("NO_SPEED_BELOW_ANY", no_speed::BELOW_ANY)?;
+    m.add_function(wrap_pyfunction!(no_speeds, m)?)?;
+    m.add_function(wrap_pyfunction!(places_of, m)?)?;
+    m.add_class::<TrackBalance>()?;
     m.add_class::<PlausibleTrack>()
 }

@@ -2,6 +2,7 @@
 
 pub mod ahead;
 pub mod altimeter;
+pub mod balance;
 mod clock;
 pub mod consistency;
 mod counters;
@@ -11,6 +12,7 @@ pub mod judgement;
 mod latch;
 pub mod motion;
 pub mod neighbours;
+pub mod no_speed;
 pub mod rnp;
 pub mod separation;
 mod settings;

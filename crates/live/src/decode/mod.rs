@@ -200,7 +200,7 @@ impl Of<'_> {
             return false;
         };
         match (frame, &mut *self.unfinished, self.format) {
-            (Frame::Line(line), Unfinished::Nothing, Format::Readsb) => out.push(readsb::position(text(line), self.claims)),
+            (Frame::Line(line), Unfinished::Nothing, Format::Readsb) => out.push(readsb::position(text(line), self.claims, self.heard.0)),
             (Frame::Line(line), Unfinished::Nothing, _) => out.push(json::position(text(line), self.heard.0, self.heard.1)),
             (Frame::Line(line), Unfinished::Sky(sky), _) => match mode_s::of_line(line) {
                 Some((message, n)) => out.extend(squitters::heard(sky, message.get(..n), self.arrival, self.claims)),

@@ -2,10 +2,12 @@
 //! and integrity (NIC, SIL). docs/methods/live.md says what becomes of a claim.
 
 use super::Decoded;
+use super::statements::{self, PassedOver, Statements};
 use crate::claims::{Claim, Claims};
 use crate::counters::Refused;
 use crate::position::{Position, Shown, TrackId};
-use navbound_core::quantity::{KNOT_MPS, Metres, Reason};
+use navbound_core::monitor::no_speed::is_no_speed;
+use navbound_core::quantity::{KNOT_MPS, Metres, Reason, Status};
 use navbound_formats::time;
 use serde::Deserialize;
 use std::borrow::Cow;
@@ -29,6 +31,9 @@ struct Line<'a> {
     /// Age of the position \[s\].
     #[serde(default)]
     seen_pos: Option<f64>,
+    /// Time since the last message of the aircraft, and no position is newer \[s\].
+    #[serde(default)]
+    seen: Option<f64>,
     #[serde(default)]
     lat: Option<f64>,
     #[serde(default)]
@@ -39,6 +44,9 @@ struct Line<'a> {
     gs: Option<f64>,
     #[serde(default)]
     nic: Option<u8>,
+    /// Radius of containment, 0 where there is none \[m\].
+    #[serde(default)]
+    rc: Option<f64>,
     #[serde(default)]
     nac_p: Option<u8>,
     #[serde(default)]
@@ -50,6 +58,76 @@ struct Line<'a> {
     #[serde(default)]
     tisb: Vec<String>,
 }
+
+/// Keys that say nothing against a position, or of which something is read: of the others what tables hear of them is heard. `alert` is the
+/// transponder's. Provenance: standard, from knowledge of the format (the README of readsb's JSON).
+const KEYS: [&str; 65] = [
+    "now",
+    "hex",
+    "type",
+    "seen_pos",
+    "seen",
+    "lat",
+    "lon",
+    "alt_geom",
+    "gs",
+    "nic",
+    "rc",
+    "nac_p",
+    "sil",
+    "mlat",
+    "tisb",
+    "flight",
+    "r",
+    "t",
+    "desc",
+    "ownOp",
+    "year",
+    "dbFlags",
+    "category",
+    "squawk",
+    "emergency",
+    "alert",
+    "spi",
+    "alt_baro",
+    "baro_rate",
+    "geom_rate",
+    "ias",
+    "tas",
+    "mach",
+    "track",
+    "track_rate",
+    "calc_track",
+    "roll",
+    "mag_heading",
+    "true_heading",
+    "nav_qnh",
+    "nav_altitude_mcp",
+    "nav_altitude_fms",
+    "nav_heading",
+    "nav_modes",
+    "wd",
+    "ws",
+    "oat",
+    "tat",
+    "version",
+    "nic_baro",
+    "nic_a",
+    "nic_c",
+    "nac_v",
+    "sil_type",
+    "gva",
+    "messages",
+    "rssi",
+    "lastPosition",
+    "rr_lat",
+    "rr_lon",
+    "dst",
+    "dir",
+    "acas_ra",
+    "gpsOkLat",
+    "gpsOkLon",
+];
 
 /// Whose a line is, and nothing else of it.
 #[derive(Deserialize)]
@@ -71,14 +149,17 @@ fn address(hex: &str) -> Option<TrackId> {
     TrackId::new(&hex.to_ascii_lowercase()).filter(|_| known)
 }
 
-pub(super) fn position(line: &[u8], claims: &Claims) -> Decoded {
-    let line: Line<'_> = serde_json::from_slice(line).map_err(|_| Refused::NotAPosition)?;
+pub(super) fn position(bytes: &[u8], claims: &Claims, statements: &Statements) -> Decoded {
+    let line: Line<'_> = serde_json::from_slice(bytes).map_err(|_| Refused::NotAPosition)?;
     let track = address(&line.hex).ok_or(Refused::TrackName)?;
     // A line without a position says something else of the aircraft: its silence is found by its missing positions.
     let (Some(lat_deg), Some(lon_deg)) = (line.lat, line.lon) else { return Err(Refused::NoPosition) };
     // A position of the future is of another clock, which must not be that of its lane.
-    let age_s = line.seen_pos.unwrap_or(0.0);
-    let of_the_future = age_s < -OLDEST_AHEAD_S;
+    // f64::max prefers a number to a NaN.
+    let [of_position_s, of_aircraft_s] = [line.seen_pos, line.seen].map(|age_s| age_s.unwrap_or(f64::NAN));
+    let oldest_s = of_position_s.max(of_aircraft_s);
+    let age_s = if oldest_s.is_nan() { 0.0 } else { oldest_s };
+    let of_the_future = of_position_s < -OLDEST_AHEAD_S || of_aircraft_s < -OLDEST_AHEAD_S;
     let unix_s = if of_the_future { line.now } else { line.now - age_s };
     if !(UNIX_S.0..UNIX_S.1).contains(&unix_s) {
         return Err(Refused::Undated);
@@ -89,7 +170,8 @@ pub(super) fn position(line: &[u8], claims: &Claims) -> Decoded {
         lat_rad: Some(lat_deg.to_radians()),
         lon_rad: Some(lon_deg.to_radians()),
         h_m: line.alt_geom.map(|feet| Metres::feet(feet).m()),
-        ground_speed_mps: line.gs.map(|knots| knots * KNOT_MPS),
+        age_s: if of_the_future { 0.0 } else { age_s.max(0.0) },
+        ground_speed_mps: line.gs.filter(|knots| !is_no_speed(*knots, KNOT_MPS)).map(|knots| knots * KNOT_MPS),
         shown: Shown { claim, ..Shown::default() },
         ..Position::new(track, time)
     };
@@ -101,7 +183,10 @@ pub(super) fn position(line: &[u8], claims: &Claims) -> Decoded {
     if of_the_future {
         return Ok(known.without(Reason::Reported));
     }
-    Ok(known.bounded(claims.bounds(claim)))
+    if statements::heard(bytes, &KEYS, known.lat_rad.zip(known.lon_rad), statements, &mut PassedOver::default()) {
+        return Ok(Position { status: Status::InvalidInput, reason: Some(Reason::Reported), ..known });
+    }
+    Ok(known.bounded(claims.bounds_beside(claim, line.rc)))
 }
 
 #[cfg(test)]
@@ -111,9 +196,15 @@ mod tests {
 
     const WHOLE: &str = r#"{"now":1731000000.500,"hex":"4CA123","type":"adsb_icao","flight":"<b>X</b>","seen_pos":0.250,"lat":48.5,"lon":2.25,"alt_geom":10000,"gs":360.0,"nic":8,"nac_p":9,"sil":3,"version":2}"#;
 
+    fn stated(line: &str) -> Decoded {
+        let lost = (vec!["gps_ok_before".into()], vec!["null".into()], None, None);
+        let statements = Statements::new(vec![lost], Vec::new(), (Default::default(), [1852.0, 18_520.0]));
+        position(line.as_bytes(), &CLAIMS, &statements)
+    }
+
     #[test]
     fn a_claim_becomes_a_circle_and_a_level() {
-        let position = position(WHOLE.as_bytes(), &CLAIMS).unwrap();
+        let position = stated(WHOLE).unwrap();
         assert_eq!((position.track.name(), position.reason, position.hpl_m), ("4ca123", None, Some(185.2)));
         // 1731000000.25 s of Unix time is 1415035200.25 s behind the begin of GPS time, and 18 leap seconds came since.
         assert_eq!(position.time.nanoseconds(), 1_415_035_218_250_000_000);
@@ -124,7 +215,7 @@ mod tests {
 
     #[test]
     fn what_is_not_claimed_is_not_assumed() {
-        let reason = |from: &str, to: &str| position(WHOLE.replace(from, to).as_bytes(), &CLAIMS).map(|position| position.reason);
+        let reason = |from: &str, to: &str| stated(&WHOLE.replace(from, to)).map(|position| position.reason);
         assert_eq!(reason(r#""nac_p":9,"#, ""), Ok(Some(Reason::NoAccuracyCategory)));
         assert_eq!(reason(r#""nac_p":9"#, r#""nac_p":0"#), Ok(Some(Reason::NoAccuracyCategory)));
         assert_eq!(reason(r#""nic":8"#, r#""nic":0"#), Ok(Some(Reason::NoIntegrityClaim)));
@@ -140,9 +231,51 @@ mod tests {
         assert_eq!(reason("4CA123", "<b>"), Err(Refused::TrackName));
         assert_eq!(reason("1731000000.500", "17"), Err(Refused::Undated));
         assert_eq!(reason(r#""seen_pos":0.250"#, r#""seen_pos":-30"#), Ok(Some(Reason::Reported)));
-        let ahead = position(WHOLE.replace(r#""seen_pos":0.250"#, r#""seen_pos":-30"#).as_bytes(), &CLAIMS).unwrap();
+        let ahead = stated(&WHOLE.replace(r#""seen_pos":0.250"#, r#""seen_pos":-30"#)).unwrap();
         assert_eq!(ahead.time.nanoseconds(), 1_415_035_218_500_000_000, "the time of the line");
         assert_eq!(reason(r#""nic":8"#, r#""nic":-8"#), Err(Refused::NotAPosition));
         assert_eq!(reason(r#""nic":8"#, r#""nic":200"#), Ok(Some(Reason::NoIntegrityClaim)));
+    }
+
+    #[test]
+    fn the_older_of_two_ages_is_that_of_the_position() {
+        for (ages, age_s) in [
+            (r#""seen_pos":0.250"#, 0.25),
+            (r#""seen_pos":0.250,"seen":0.1"#, 0.25),
+            (r#""seen_pos":0.250,"seen":40.0"#, 40.0),
+            (r#""seen":40.0"#, 40.0),
+            (r#""seen_pos":-0.5"#, 0.0),
+        ] {
+            assert_eq!(stated(&WHOLE.replace(r#""seen_pos":0.250"#, ages)).unwrap().age_s, age_s, "{ages}");
+        }
+        let position = stated(&WHOLE.replace(r#""seen_pos":0.250"#, r#""seen":40.5"#)).unwrap();
+        assert_eq!(position.time.nanoseconds(), 1_415_035_178_000_000_000, "40.5 s before the line");
+        let ahead = stated(&WHOLE.replace(r#""seen_pos":0.250"#, r#""seen_pos":-30,"seen":1"#)).unwrap();
+        assert_eq!(ahead.reason, Some(Reason::Reported));
+    }
+
+    #[test]
+    fn a_radius_counts_before_its_category_and_none_is_no_claim() {
+        let level = |rc: &str| {
+            let position = stated(&WHOLE.replace(r#""nic":8"#, rc)).unwrap();
+            position.hpl_m.ok_or(position.reason)
+        };
+        let none = Err(Some(Reason::NoIntegrityClaim));
+        assert_eq!([level(r#""nic":8,"rc":900"#), level(r#""rc":900"#)], [Ok(900.0); 2]);
+        assert_eq!([level(r#""nic":8,"rc":0"#), level(r#""nic":0,"rc":900"#), level(r#""nic":8,"rc":-1"#)], [none; 3]);
+    }
+
+    #[test]
+    fn what_a_line_says_against_its_position_is_heard() {
+        let reason = |more: &str| stated(&WHOLE.replace(r#""lat":48.5,"#, &format!(r#""lat":48.5,{more}"#))).unwrap().reason;
+        assert_eq!(reason(r#""gpsOkBefore":1731000000.0,"#), Some(Reason::Reported));
+        assert_eq!(reason(r#""alert":1,"spi":1,"nav_modes":["lnav","tcas"],"emergency":"none","#), None);
+    }
+
+    #[test]
+    fn numbers_that_are_no_speed_are_not_stated() {
+        for knots in ["1023.0", "-1.0", "2000.0"] {
+            assert_eq!(stated(&WHOLE.replace("360.0", knots)).unwrap().ground_speed_mps, None, "{knots}");
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::codec::{Damaged, Reader, Writer};
 use navbound_core::monitor::neighbours::east_north_m;
+use navbound_formats::place::{self, Written};
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
 use serde_json::Value;
@@ -29,14 +30,39 @@ struct Places {
     of_others: BTreeSet<String>,
     /// Of one that inertial sensors alone keep.
     inertial: BTreeSet<String>,
+    /// Of a place with both coordinates in one value.
+    pair: BTreeSet<String>,
     /// How far another place may be away, and one of inertial sensors \[m\].
     apart_m: [f64; 2],
 }
 
-/// Parts of names: latitude, longitude, what is none of the vehicle, inertial sensors; and how far such places may be away \[m\].
-pub type PlaceWords = ([Vec<String>; 4], [f64; 2]);
+/// Parts of names: latitude, longitude, what is none of the vehicle, inertial sensors, both coordinates in one; and how far such places may be
+/// away \[m\].
+pub type PlaceWords = ([Vec<String>; 5], [f64; 2]);
 
 impl Places {
+    /// Whether a value with both coordinates is a place of the vehicle that its position contradicts, in whichever order they are.
+    fn pair_contradicts(&self, key: &str, value: &Value, (lat_rad, lon_rad): LatLon) -> bool {
+        let parts = parts(key);
+        let any = |words: &BTreeSet<String>| parts.iter().any(|part| words.contains(part.trim_end_matches(|c: char| c.is_ascii_digit())));
+        let written = match value {
+            Value::String(text) => place::of_text(text),
+            Value::Array(all) => numbers(all).map(|deg| Written { deg, ordered: false, by_itself: false }),
+            _ => None,
+        };
+        let named = any(&self.pair);
+        let Some(written) = written.filter(|written| (written.by_itself || named) && written.deg != [0.0; 2] && !any(&self.of_others))
+        else {
+            return false;
+        };
+        let apart_m = written.places_rad().map(|there| {
+            let [east, north] = east_north_m([lat_rad, lon_rad], there);
+            libm::hypot(east, north)
+        });
+        let [of_any, of_inertial] = self.apart_m;
+        apart_m.reduce(f64::min).is_some_and(|apart_m| apart_m > if any(&self.inertial) { of_inertial } else { of_any })
+    }
+
     /// Whether a number under a name is a coordinate of the vehicle that its position contradicts.
     fn contradict(&self, key: &str, value: &Value, (lat_rad, lon_rad): LatLon) -> bool {
         let parts = parts(key);
@@ -55,6 +81,15 @@ impl Places {
         let apart_m = east.abs().max(north.abs());
         let [of_any, of_inertial] = self.apart_m;
         apart_m > if any(&self.inertial) { of_inertial } else { of_any }
+    }
+}
+
+/// The two numbers of a list that may be a place, with a height at most.
+fn numbers(all: &[Value]) -> Option<[f64; 2]> {
+    let numbers: Option<Vec<f64>> = all.iter().map(Value::as_f64).collect();
+    match *numbers? {
+        [first, second] | [first, second, _] => Some([first, second]),
+        _ => None,
     }
 }
 
@@ -113,8 +148,8 @@ pub type StatementRow = (Vec<String>, Vec<String>, Option<f64>, Option<f64>);
 impl Statements {
     /// Of kinds, of words of `nav_mode` that speak against the position, and of names of other places.
     pub fn new(kinds: Vec<StatementRow>, modes: Vec<String>, (words, apart_m): PlaceWords) -> Self {
-        let [latitude, longitude, of_others, inertial] = words.map(|each| each.into_iter().collect());
-        let places = Places { latitude, longitude, of_others, inertial, apart_m };
+        let [latitude, longitude, of_others, inertial, pair] = words.map(|each| each.into_iter().collect());
+        let places = Places { latitude, longitude, of_others, inertial, pair, apart_m };
         let mut all = Self { modes: modes.into_iter().collect(), places, ..Self::default() };
         for (names, fine, least, most) in kinds {
             all.by_name.extend(names.into_iter().map(|name| (plain(&name), all.kinds.len())));
@@ -132,11 +167,12 @@ impl Statements {
     fn speaks_against(&self, key: &str, value: &Value) -> Option<bool> {
         let any = |spoken: &mut dyn Iterator<Item = bool>| spoken.reduce(|one, other| one || other);
         match value {
-            Value::Object(inner) => any(&mut inner.iter().filter_map(|(name, each)| {
+            Value::Object(inner) => any(&mut inner.iter().filter(|(name, _)| !is_shape(inner, name)).filter_map(|(name, each)| {
                 self.speaks_against(&format!("{key}_{name}"), each).or_else(|| self.speaks_against(name, each))
             }))
             // What is said of a position in words that nobody knows speaks against it.
             .or_else(|| self.kind(key).map(|_| true)),
+            Value::String(text) if written(text).is_some() => written(text).and_then(|value| self.speaks_against(key, &value)),
             _ if self.kind(key).is_some() => self.kind(key).map(|kind| kind.against(value)),
             Value::Array(all) => any(&mut all.iter().filter_map(|each| self.speaks_against(key, each))),
             Value::String(text) => text.split([',', ';', '|']).any(|flag| self.kind(flag).is_some_and(Kind::is_flag)).then_some(true),
@@ -148,7 +184,8 @@ impl Statements {
     fn elsewhere(&self, key: &str, value: &Value, at: LatLon) -> bool {
         match value {
             Value::Object(inner) => inner.iter().any(|(name, each)| self.elsewhere(&format!("{key}_{name}"), each, at)),
-            _ => self.places.contradict(key, value, at),
+            Value::String(text) if written(text).is_some() => written(text).is_some_and(|value| self.elsewhere(key, &value, at)),
+            _ => self.places.contradict(key, value, at) || self.places.pair_contradicts(key, value, at),
         }
     }
 
@@ -156,6 +193,16 @@ impl Statements {
     pub(super) fn stopped(&self, mode: &str) -> bool {
         self.modes.contains(&spelled(mode))
     }
+}
+
+/// Whether a name is the `type` of something with coordinates, which is a shape.
+fn is_shape(of: &serde_json::Map<String, Value>, name: &str) -> bool {
+    name == "type" && ["coordinates", "geometry"].iter().any(|key| of.contains_key(*key))
+}
+
+/// An object of JSON that is written into a text.
+fn written(text: &str) -> Option<Value> {
+    text.trim_start().starts_with('{').then(|| serde_json::from_str(text).ok()).flatten()
 }
 
 /// A name without case, blanks and strokes.
@@ -245,12 +292,10 @@ impl<'de> Visitor<'de> for Others<'_> {
                 continue;
             }
             let value: Value = map.next_value()?;
+            against |= self.at.is_some_and(|at| self.statements.elsewhere(&key, &value, at));
             match self.statements.speaks_against(&key, &value) {
                 Some(so) => against |= so,
-                None => {
-                    against |= self.at.is_some_and(|at| self.statements.elsewhere(&key, &value, at));
-                    self.passed_over.count(&key);
-                }
+                None => self.passed_over.count(&key),
             }
         }
         Ok(against)

@@ -13,6 +13,7 @@ import polars as pl
 from navbound.errors import FormatError
 from navbound.read.beside.places import OtherPlaces
 from navbound.read.checks.plausible import Limits
+from navbound.read.checks.repeats import SAME_PLACE_M
 from navbound.read.checks.statements import STALE_AFTER_S
 from navbound.read.quantities import UNITS
 from navbound.read.tables.cells import largest, no_field, numbers
@@ -57,23 +58,28 @@ class Further:
         self._time = next((column for column in mapping.again if column.quantity == "time"), None)
         self._facts, self._unit = list[TimeFacts](), ""
         self._apart_m: dict[str, float] = {}
-        self._places = OtherPlaces(mapping.places)
+        self._places = OtherPlaces(mapping.places, mapping.declared)
         self._speeds: dict[str, tuple[int, int, float]] = {}
         self._apart_s = 0.0
 
-    def see(self, part: pl.DataFrame, frame: pl.DataFrame, tally: tuple[Tally, int]) -> pl.DataFrame:
-        """The next rows: those that are read, with the largest speed, and the file's; `tally` takes numbers that are no speeds."""
-        self._places.see(part, frame)
+    def see(self, part: pl.DataFrame, frame: pl.DataFrame, within: pl.DataFrame, tally: tuple[Tally, int]) -> pl.DataFrame:
+        """The next rows: those that are read, with the largest speed, the file's, and what objects in its fields state.
+
+        `tally` takes numbers that are no speeds.
+        """
+        self._places.see(part, frame, within)
         for column in self._mapping.again:
             if column.quantity not in part.columns or no_field(frame.schema[column.name]):
                 continue
-            other, _ = numbers(frame[column.name], column)
+            raw = frame[column.name]
+            if column.quantity == "ground_speed_mps":
+                raw = self._no_speeds.without(column.name, frame, raw, UNITS["mps"][column.unit], tally)
+            other, _ = numbers(raw, column)
             if column.quantity in _SCALE_M:
-                self._see_place(column, part, other)
+                part = self._see_place(column, part, other)
             elif column.quantity in _INDICATORS:
                 part = part.with_columns(pl.min_horizontal(column.quantity, other).alias(column.quantity))
             else:
-                other = self._no_speeds.without(column.name, frame, other, UNITS["mps"][column.unit], tally)
                 self._see_speeds(column.name, part[column.quantity], other)
                 part = part.with_columns(pl.max_horizontal(column.quantity, other).alias(column.quantity))
         if {"ground_speed_mps", *_VELOCITY} <= set(part.columns):
@@ -81,11 +87,15 @@ class Further:
             self._see_speeds(_VELOCITY[0], part["ground_speed_mps"], of_velocity)
         return part
 
-    def _see_place(self, column: Column, part: pl.DataFrame, other: pl.Series) -> None:
+    def _see_place(self, column: Column, part: pl.DataFrame, other: pl.Series) -> pl.DataFrame:
+        """Rows with the distance between both as an accuracy that they state: one of them is wrong by half of it, or both are."""
         apart = pl.col(column.quantity) - other
         apart -= 2.0 * math.pi * (apart / (2.0 * math.pi)).round()
         apart_m = part.select(apart_m=apart.abs() * _SCALE_M[column.quantity])["apart_m"]
         self._apart_m[column.name] = max(self._apart_m.get(column.name, 0.0), largest(apart_m))
+        before = [pl.col("unread_accuracy_m")] if "unread_accuracy_m" in part.columns else []
+        apart_m = pl.select(pl.when(pl.lit(apart_m) > SAME_PLACE_M).then(pl.lit(apart_m))).to_series()
+        return part.with_columns(pl.max_horizontal(*before, pl.lit(apart_m)).alias("unread_accuracy_m")) if apart_m.count() else part
 
     def _contradicting_places(self) -> list[str]:
         """Other places of the vehicle that are far away."""
@@ -101,6 +111,16 @@ class Further:
         far = apart > SPEEDS_APART_MPS + SPEEDS_APART * pl.select(pl.max_horizontal(one, other)).to_series()
         n, n_far, most = self._speeds.get(name, (0, 0, 0.0))
         self._speeds[name] = (n + len(apart.drop_nulls().drop_nans()), n_far + int(far.sum() or 0), max(most, largest(apart)))
+
+    def notes(self) -> list[str]:
+        """Positions of which two columns differ by less than leaves nothing shown, after all rows."""
+        return [
+            f"{self._path.name}: “{used.name}” and “{column.name}” are two columns of one quantity and up to {apart_m:.1f} m apart; "
+            "the first is read, and their distance counts as an accuracy that the recording states"
+            for column in self._mapping.again
+            if (used := self._mapping.columns.get(column.quantity)) is not None
+            and SAME_PLACE_M < (apart_m := self._apart_m.get(column.name, 0.0)) <= APART_M
+        ]
 
     def doubts(self) -> list[str]:
         """Positions of which two columns say something else, after all rows."""

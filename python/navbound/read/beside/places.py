@@ -2,7 +2,8 @@
 
 Nobody declared which one counts. One that is far away contradicts the position, in whatever form it is written: degrees, radians, integers
 of 1e-7 degrees or of 180/2^31 degrees, degrees with minutes and hemisphere, two numbers in one field, or Earth-fixed axes. Of several forms
-that a column may have, that counts which brings it nearest.
+that a column may have, that counts which brings it nearest. A text that can be nothing but a place (a point of WKT, ISO 6709, degrees with
+both hemispheres) is one under any name; which texts are places decides `formats::place`, for live feeds too.
 """
 
 from __future__ import annotations
@@ -14,8 +15,17 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 import polars as pl
 
+from navbound import _core
 from navbound.read.checks.places import east_north_m
-from navbound.read.checks.statements import INERTIAL_APART_M, PLACES_APART_M, is_no_vehicle, name_parts, other_place
+from navbound.read.checks.statements import (
+    INERTIAL_APART_M,
+    PLACES_APART_M,
+    is_no_vehicle,
+    is_pair,
+    keeps_inertial,
+    name_parts,
+    other_place,
+)
 from navbound.read.tables.cells import MISSING
 from navbound.units import EARTH_RADIUS_M
 
@@ -34,12 +44,8 @@ _READ_SHARE = 0.5
 _SEMICIRCLE = math.pi / 2**31
 _FORMS: dict[str, float] = {"deg": math.radians(1.0), "deg_e7": math.radians(1e-7), "semicircles": _SEMICIRCLE}
 """What a coordinate may be written in, to radians."""
-_PAIR_WORDS = frozenset(
-    ("pos", "position", "coord", "coords", "coordinate", "coordinates", "geom", "geometry", "loc", "location", "point", "place")
-) | {"latlon", "latlng", "lonlat"}
-"""Parts of names of columns with two numbers in one field."""
-_SRID = r"^SRID=\d+;\s*"
-_PAIR = r"^(POINT\s*(Z|ZM)?\s*)?[\s\[(]*[-+]?\d{1,3}\.\d+[\s,;]+[-+]?\d{1,3}\.\d+([\s,;]+[-+]?\d+(\.\d+)?)?[\s\])]*$"
+_MARKS = r"(?i)point\s*[zm]*\s*\(|^\s*[+-]\d[\d.]+[+-]\d|\d.*[nsew].*\d|[nsew].*\d.*[nsew]|\d\.\d*[\s,;]+[-+]?\d+\.\d"
+"""What every text that is a place has."""
 _EARTH_M = (6.3e6, 6.5e6)
 """Distances from the Earth's centre that make three numbers a position. [m]"""
 
@@ -81,12 +87,19 @@ class Form(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Columns that are another place: one of an axis, one with both, or three of Earth-fixed axes."""
+    """Columns that are another place: one of an axis, one with both, or three of Earth-fixed axes.
+
+    Attributes
+    ----------
+    by_name : bool
+        The name says that it is one; otherwise its texts must.
+    """
 
     names: tuple[str, ...]
     axis: Axis | None
     whose: tuple[str, ...]
     inertial: bool
+    by_name: bool = True
 
 
 def find(free: Sequence[str], declared: Iterable[str]) -> list[Place]:
@@ -97,8 +110,8 @@ def find(free: Sequence[str], declared: Iterable[str]) -> list[Place]:
         of = other_place(name)
         if of is not None and of.axis in axes:
             places.append(Place((name,), of.axis, of.whose, of.inertial))
-        elif of is None and axes == [LAT, LON] and _PAIR_WORDS & set(name_parts(name)) and not is_no_vehicle(name):
-            places.append(Place((name,), None, (name,), inertial=False))
+        elif of is None and axes == [LAT, LON] and not is_no_vehicle(name):
+            places.append(Place((name,), None, (name,), inertial=keeps_inertial(name), by_name=is_pair(name)))
     ecef = _ecef(free) if axes == [LAT, LON] else None
     return places if ecef is None else [*places, Place(ecef, None, ecef, inertial=False)]
 
@@ -113,25 +126,29 @@ def _ecef(free: Sequence[str]) -> tuple[str, str, str] | None:
 
 
 def _bare(name: str) -> str:
-    return "_".join(part for part in name_parts(name) if part not in {"", "m", "km"})
+    return "_".join(part for part in name_parts(name) if part not in {"", "m", "km", "cm"})
 
 
 class OtherPlaces:
     """Compares other places with the position that is read, over all rows."""
 
-    def __init__(self, places: Sequence[Place]) -> None:
-        self._places = places
+    def __init__(self, places: Sequence[Place], declared: Iterable[str] = ()) -> None:
+        self._places, self._declared = list(places), frozenset(declared)
         self._forms: dict[tuple[Place, str], Form] = {}
         self._own = Form()
 
-    def see(self, part: pl.DataFrame, frame: pl.DataFrame) -> None:
-        """The next rows: those that are read, and the file's."""
+    def see(self, part: pl.DataFrame, frame: pl.DataFrame, within: pl.DataFrame) -> None:
+        """The next rows: those that are read, the file's, and what objects in their fields state."""
+        self._places += [place for place in find(within.columns, self._declared) if place not in self._places]
         if not self._places or not {LAT, LON} <= set(part.columns):
             return
+        frame = frame.hstack(within)
         own = part.select(LAT, LON).to_numpy().astype(np.float64)
         here_m = np.where(np.isfinite(own).all(axis=1), 0.0, np.nan)
         self._own = self._own.with_rows(own[:, 0], own[:, 1], here_m, len(own))
         for place in self._places:
+            if not set(place.names) <= set(frame.columns):
+                continue
             n, forms = _read(place, frame)
             for form, there in forms:
                 apart_m = _apart_m(place, own, there)
@@ -171,7 +188,7 @@ def _read(place: Place, frame: pl.DataFrame) -> tuple[int, list[tuple[str, NDArr
         return _of_ecef(frame.select(place.names))
     column = frame[place.names[0]]
     if place.axis is None:
-        return _of_pairs(column)
+        return _of_pairs(column, by_name=place.by_name)
     return _of_axis(column, place.axis, radians="rad" in name_parts(column.name))
 
 
@@ -211,23 +228,27 @@ def _angles(column: pl.Series) -> NDArray[np.float64]:
     return pl.select(pl.when(against).then(-degrees).otherwise(degrees)).to_series().fill_null(math.nan).to_numpy(writable=True)
 
 
-def _of_pairs(column: pl.Series) -> tuple[int, list[tuple[str, NDArray[np.float64]]]]:
-    """Two numbers in one field, in either order."""
+def _of_pairs(column: pl.Series, *, by_name: bool) -> tuple[int, list[tuple[str, NDArray[np.float64]]]]:
+    """Two numbers in one field, in either order where the form does not say which."""
     dtype = column.dtype
-    if isinstance(dtype, pl.List) and pl.Series(dtype=dtype.inner).dtype.is_numeric():
-        numbers = column
+    ordered = np.zeros(len(column), dtype=bool)
+    if by_name and isinstance(dtype, pl.List) and pl.Series(dtype=dtype.inner).dtype.is_numeric():
+        both = np.column_stack([_floats(column.list.get(k, null_on_oob=True)) for k in (0, 1)])
     elif dtype == pl.String:
-        text = column.str.strip_chars().str.to_uppercase().str.replace(_SRID, "")
-        numbers = text.set(~text.str.contains(_PAIR), None).str.extract_all(r"[-+]?\d+(?:\.\d+)?")
+        both = np.full((len(column), 2), np.nan)
+        # Few texts have a place; those without its marks are not looked at one by one.
+        marked = column.str.contains(_MARKS).fill_null(value=False)
+        for at, place in zip(marked.arg_true().to_list(), _core.places_of(column.filter(marked).to_list()), strict=True):
+            if place is not None and (by_name or place[2]):
+                both[at], ordered[at] = place[0], place[1]
     else:
         return 0, []
-    both = np.column_stack([numbers.list.get(k, null_on_oob=True).cast(pl.Float64).fill_null(math.nan).to_numpy() for k in (0, 1)])
     both[(both == 0.0).all(axis=1)] = np.nan
     read: list[tuple[str, NDArray[np.float64]]] = []
-    for form, order in (("lat, lon", [0, 1]), ("lon, lat", [1, 0])):
-        there = np.radians(both[:, order])
-        there[~((np.abs(there[:, 0]) <= 0.5 * np.pi) & (np.abs(there[:, 1]) <= 2.0 * np.pi))] = np.nan
-        read.append((form, there))
+    for form, there in (("lat, lon", both), ("lon, lat", np.where(ordered[:, None], both, both[:, ::-1]))):
+        place_rad = np.radians(there)
+        place_rad[~((np.abs(place_rad[:, 0]) <= 0.5 * np.pi) & (np.abs(place_rad[:, 1]) <= 2.0 * np.pi))] = np.nan
+        read.append((form, place_rad))
     return column.len() - column.null_count(), read
 
 
@@ -237,9 +258,10 @@ def _of_ecef(frame: pl.DataFrame) -> tuple[int, list[tuple[str, NDArray[np.float
     axes = np.column_stack([_floats(frame[name].cast(pl.Float64, strict=False)) for name in frame.columns])
     there = np.full((len(axes), 2), np.nan)
     length_m = np.linalg.norm(axes, axis=1)
-    if np.isfinite(length_m).any() and np.nanmedian(length_m) < 1e-2 * _EARTH_M[0]:
-        # In kilometres.
-        axes, length_m = 1e3 * axes, 1e3 * length_m
+    # In kilometres, or in centimetres as u-blox receivers have them.
+    usual_m = float(np.nanmedian(length_m)) if np.isfinite(length_m).any() else 0.0
+    factor = 1e3 if usual_m < 1e-2 * _EARTH_M[0] else 1e-2 if 1e2 * _EARTH_M[0] < usual_m < 1e2 * _EARTH_M[1] else 1.0
+    axes, length_m = factor * axes, factor * length_m
     on_earth = (length_m > _EARTH_M[0]) & (length_m < _EARTH_M[1])
     if on_earth.any():
         there[on_earth] = gnss.geodetic(axes[on_earth])[:, :2]

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
+from navbound import _core
 from navbound.read.checks.places import east_north_m
 from navbound.read.quantities import UNITS
 from navbound.read.tables.columns import NO_COLUMN, declare
@@ -65,7 +66,9 @@ class SpeedUnit:
             written = parts["1"].cast(pl.Float64, strict=False) * factor
             self._written |= written.count() > 0
             values = pl.select(pl.coalesce(written, values)).to_series()
-        return pl.select(pl.when(values.is_finite() & (values >= 0.0)).then(values).alias(SPEED)).to_series()
+        # What stands for no speed in every unit is counted once the unit is known.
+        known = values.is_finite() & ((values >= 0.0) | (values == _core.NO_SPEED_BELOW_ANY))
+        return pl.select(pl.when(known).then(values).alias(SPEED)).to_series()
 
     def see(self, part: pl.DataFrame) -> None:
         """The next rows, with their positions, numbers and times as they are written; the first of the file that say much are kept."""

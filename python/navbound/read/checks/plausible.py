@@ -45,7 +45,7 @@ class Limits:
         How long after a jump no position is believed.
     """
 
-    max_speed_mps: float = 400.0
+    max_speed_mps: float = _core.FASTEST_MPS
     speed_factor: float = 1.25
     speed_margin_mps: float = 25.0
     latency_s: float = 10.0

@@ -463,7 +463,12 @@ def other_place(name: str) -> Place | None:
     parts = name_parts(name)
     words = {part.rstrip("0123456789") for part in parts}
     whose = tuple(re.sub("|".join(sorted(_LATITUDE, key=len, reverse=True)), "", part) for part in parts)
-    return Place("est_lat_rad" if words & _LATITUDES else "est_lon_rad", whose, not _INERTIAL.isdisjoint(words))
+    return Place("est_lat_rad" if words & _LATITUDES else "est_lon_rad", whose, keeps_inertial(name))
+
+
+def keeps_inertial(name: str) -> bool:
+    """Whether a name is one of what inertial sensors alone keep."""
+    return not _INERTIAL.isdisjoint(part.rstrip("0123456789") for part in name_parts(name))
 
 
 def is_no_vehicle(name: str) -> bool:
@@ -471,9 +476,21 @@ def is_no_vehicle(name: str) -> bool:
     return not _NO_VEHICLE.isdisjoint(part.rstrip("0123456789") for part in name_parts(name))
 
 
+_PAIRS = _words("pos position coord coords coordinate coordinates geom geometry loc location point place latlon latlng lonlat")
+"""Parts of names of a place with both coordinates in one field. Provenance: ours."""
+
+
+def is_pair(name: str) -> bool:
+    """Whether a name is one of both coordinates of a place of the vehicle."""
+    return not _PAIRS.isdisjoint(name_parts(name)) and not is_no_vehicle(name)
+
+
 def place_words() -> list[list[str]]:
-    """Parts of names of a latitude, a longitude, what is none of the vehicle now, and what inertial sensors keep: the same rule live."""
-    return [sorted(words) for words in (_LATITUDES, _LONGITUDES, _NO_VEHICLE, _INERTIAL)]
+    """Parts of names by which live knows other places, too.
+
+    Of a latitude, of a longitude, of what is none of the vehicle now, of what inertial sensors keep, and of both coordinates in one.
+    """
+    return [sorted(words) for words in (_LATITUDES, _LONGITUDES, _NO_VEHICLE, _INERTIAL, _PAIRS)]
 
 
 PLACES_APART_M = 1852.0

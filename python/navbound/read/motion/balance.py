@@ -8,38 +8,30 @@ from typing import TYPE_CHECKING
 from navbound import _core
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from navbound.read.motion.ways import Minutes
-
-_FAST_MPS, _STRAIGHT, _LACK_M, _LACK_SHARE = _core.LIVE_BALANCE
-"""From which speed a way counts, how straight it must be, what it may lack in all, and the share of the way by the speeds that it may lack
-more: the rule of live feeds, whose crate has the reasons. [m/s, 1, m, 1]"""
+    import polars as pl
 
 
 @dataclass
 class Balance:
-    """The way of the positions, and that by the speeds, track by track, over windows in which the aircraft is fast. [m]."""
+    """The way of the positions, and that by the speeds, track by track, by the rule of live feeds (`core::monitor::balance`)."""
 
-    ways: dict[str, tuple[float, float]] = field(default_factory=dict)
+    tracks: dict[str, _core.TrackBalance] = field(default_factory=dict)
 
-    def count(self, windows: Minutes, apart_m: NDArray[np.float64], way_m: NDArray[np.float64], by_speed_m: NDArray[np.float64]) -> None:
-        """The next windows."""
-        fast = (by_speed_m >= _FAST_MPS * windows.length_s) & (apart_m >= _STRAIGHT * way_m)
-        for track, is_fast, way, by_speed in zip(windows.tracks, fast.tolist(), way_m.tolist(), by_speed_m.tolist(), strict=True):
-            if is_fast:
-                before = self.ways.get(track, (0.0, 0.0))
-                self.ways[track] = (before[0] + way, before[1] + by_speed)
+    def see(self, rows: pl.DataFrame) -> None:
+        """The next rows, in the order of track and time, with the speeds that they state themselves."""
+        for group in rows.partition_by("track", maintain_order=True):
+            balance = self.tracks.setdefault(group["track"][0], _core.TrackBalance())
+            balance.see(*(group[name].to_numpy() for name in ("time_ns", "est_lat_rad", "est_lon_rad", "_speed")))
 
     def words(self) -> str | None:
         """A doubt, where the positions of a track are behind the way by its speeds in all; of the track that lacks most."""
-        lacking = {name: by_speed - way for name, (way, by_speed) in self.ways.items() if by_speed - way > _LACK_M + _LACK_SHARE * by_speed}
+        lacking = {name: behind for name, each in self.tracks.items() if (behind := each.behind_m()) is not None}
         if not lacking:
             return None
-        name = max(lacking, key=lambda each: lacking[each])
+        name = max(lacking, key=lambda each: lacking[each][0])
+        lack_m, way_m = lacking[name]
         return (
-            f"The positions fall behind the recording's own speeds by {lacking[name]:.0f} m in all, on a way of {self.ways[name][1]:.0f} m "
-            f"(track {name}, {len(lacking)} of {len(self.ways)} tracks): positions are held or late and never catch up, or the speeds are "
-            "not over the ground"
+            f"The positions fall behind the recording's own speeds by {lack_m:.0f} m in all, on a way of {way_m:.0f} m "
+            f"(track {name}, {len(lacking)} of {len(self.tracks)} tracks): positions are held or late and never catch up, or the speeds "
+            "are not over the ground"
         )

@@ -45,6 +45,7 @@ class Speeds:
             return
         self._steps.see(rows)
         self._directions.see(rows)
+        self._balance.see(rows)
         rows = rows.with_columns(_speed_ns=pl.when(pl.col("_speed").is_finite()).then("time_ns"))
         rows = rows if self._waiting is None else pl.concat([self._waiting, rows])
         rows = rows.with_columns(_speed=_CARRIED).with_columns(
@@ -65,7 +66,6 @@ class Speeds:
         apart_m, way_m = np.hypot(*minutes.apart_en_m.T), minutes.way_m
         longer = apart_m > _LONGER * by_speed_m + minutes.margin_m
         shorter = way_m < _SHORTER * by_speed_m - OFFSET_M
-        self._balance.count(minutes, apart_m, way_m, by_speed_m)
         self._longer.count(minutes, longer, np.column_stack([apart_m, by_speed_m]))
         self._shorter.count(minutes, shorter, np.column_stack([way_m, by_speed_m]))
 

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import json
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import polars as pl
 
 from navbound.read.quantities import QUANTITY, UNITS
 from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from numpy.typing import NDArray
+
     from navbound.read.tables.columns import Column
 
 MISSING = r"(?i)^([+-]?nan(\(\w*\))?)?$"
@@ -69,6 +75,75 @@ def numbers(column: pl.Series, what: Column) -> tuple[pl.Series, pl.Series]:
         .alias("reason"),
     )  # fmt: skip
     return frame["value"], frame["reason"]
+
+
+def floats(column: pl.Series) -> NDArray[np.float64]:
+    """The numbers of a column as they are written; NaN where there is none."""
+    if column.dtype == pl.String:
+        column = column.str.strip_chars().cast(pl.Float64, strict=False)
+    if not column.dtype.is_numeric():
+        return np.full(len(column), np.nan)
+    return column.cast(pl.Float64).fill_null(math.nan).to_numpy(writable=True)
+
+
+DEEPEST = 8
+"""Objects within objects whose values are columns; deeper ones are text. [1]"""
+
+
+def leaves(record: Mapping[str, Any], within: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """The values of an object, and of the objects in it, with the keys that lead to each."""
+    for name, value in record.items():
+        if isinstance(value, dict) and len(within) < DEEPEST:
+            yield from leaves(value, (*within, name))
+        elif isinstance(value, dict):
+            # Deeper ones are text: a type of hundreds of levels takes minutes to make.
+            yield (*within, name), json.dumps(value)
+        else:
+            yield (*within, name), value
+
+
+def series(name: str, values: list[Any]) -> pl.Series:
+    """Numbers, truth values or text; a mixture becomes text."""
+    try:
+        return pl.Series(name, values, strict=True)
+    except (TypeError, pl.exceptions.PolarsError, OverflowError):
+        kinds = {type(v) for v in values if v is not None}
+        if kinds <= {int, float}:
+            return pl.Series(name, [None if v is None else float(v) for v in values], dtype=pl.Float64)
+        return pl.Series(name, [None if v is None else str(v) for v in values], dtype=pl.String)
+
+
+_OBJECT = r"^\s*(\{|\[\s*\{)"
+_LISTED = 20
+"""Objects of a list in a field that are read. [1]"""
+
+
+def within_objects(frame: pl.DataFrame) -> pl.DataFrame:
+    """What objects of JSON state that are written into the fields of text columns: a column of each key, named behind that of its field."""
+    written = [name for name, dtype in frame.schema.items() if dtype == pl.String and frame[name].str.contains(_OBJECT).any()]
+    columns = list[pl.Series]()
+    for name in written:
+        records = [_object(cell) for cell in frame[name]]
+        keys = dict.fromkeys(keys for record in records for keys in record)
+        columns += [series(".".join((name, *each)), [record.get(each) for record in records]) for each in keys]
+    taken = set(frame.columns)
+    unique = {each.name: each for each in columns if each.name not in taken}
+    return pl.DataFrame(list(unique.values()))
+
+
+def _object(cell: str | None) -> dict[tuple[str, ...], Any]:
+    if cell is None or not cell.lstrip().startswith(("{", "[")):
+        return {}
+    # Some programs write the marks of their own language.
+    for text in (cell, cell.replace("'", '"').replace("True", "true").replace("False", "false").replace("None", "null")):
+        try:
+            content = json.loads(text)
+        except (ValueError, RecursionError):
+            continue
+        listed = content[:_LISTED] if isinstance(content, list) else []
+        content = content if isinstance(content, dict) else {str(k): each for k, each in enumerate(listed) if isinstance(each, dict)}
+        return dict(leaves(content))
+    return {}
 
 
 def largest(values: pl.Series) -> float:

@@ -90,6 +90,8 @@ class Assignment:
         Further columns of a position, a speed or a time that is read and that nobody declared: a known name stands twice.
     places : list of Place
         Other places of the vehicle under names that nothing reads, where nobody declared which one counts.
+    declared : frozenset of str
+        Quantities of which somebody declared the column.
     absent : frozenset of str
         Quantities that no column is to be read as, nor made of others.
     speed : str
@@ -104,6 +106,7 @@ class Assignment:
     places: list[Place] = field(default_factory=list)
     absent: frozenset[str] = frozenset()
     speed: str = ""
+    declared: frozenset[str] = frozenset()
 
     @property
     def unread(self) -> list[str]:
@@ -244,9 +247,10 @@ def assign(
     again = _again(columns, times, {*(declared or {}), *beside}, rest, path)
     unused = [n for n in free if n not in stating]
     compared = {column.name for column in again}
-    places = find([n for n in unused if n not in compared], {*(declared or {}), *beside}) if tuple(needs) == POSITION else []
+    stated_of = frozenset({*(declared or {}), *beside})
+    places = find([*(n for n in unused if n not in compared), *stating], stated_of) if tuple(needs) == POSITION else []
     speed = "" if tuple(needs) != POSITION or "ground_speed_mps" in columns.keys() | absent else _speed_without_unit(unused)
-    return Assignment(columns, times, unused, statements, again, places, absent, speed)
+    return Assignment(columns, times, unused, statements, again, places, absent, speed, stated_of)
 
 
 def _kinds(free: list[str], plain: set[str]) -> dict[str, Kind | None]:
@@ -259,6 +263,21 @@ def _kinds(free: list[str], plain: set[str]) -> dict[str, Kind | None]:
     if plain >= HEARD:
         kinds |= {name: AGE for name in free if _plain(name)[0] == "seen"}
     return kinds
+
+
+def kinds_within(names: Iterable[str]) -> dict[str, Kind]:
+    """What keys of objects in fields state of positions: each by itself, or behind the names of its field and object.
+
+    The `type` of what has coordinates says what it is.
+    """
+    names = list(names)
+    shapes = {name.rpartition(".")[0] for name in names if name.endswith((".coordinates", ".geometry")) or ".geometry." in name}
+    kinds = {name: kind_of(_plain(name.rpartition(".")[2])[0]) or kind_of(_plain(name)[0]) for name in names}
+    return {
+        name: kind
+        for name, kind in kinds.items()
+        if kind is not None and not (name.endswith(".type") and name.rpartition(".")[0] in shapes)
+    }
 
 
 def _speed_without_unit(free: list[str]) -> str:

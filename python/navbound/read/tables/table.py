@@ -16,6 +16,7 @@ from navbound.errors import FormatError
 from navbound.read.checks.rejections import Rejections
 from navbound.read.checks.statements import alarms
 from navbound.read.tables import readsb
+from navbound.read.tables.cells import DEEPEST, leaves, series
 from navbound.read.tables.columns import declare
 from navbound.read.tables.memory import require_free
 from navbound.storage import packed
@@ -347,10 +348,6 @@ def _parquet(source: Source) -> Table:
     return Table(_counted(frame), Rejections(source.path, "record"), frame.height)
 
 
-_DEEPEST = 8
-"""Objects within objects whose values are columns; deeper ones are text. [1]"""
-
-
 def _columns_of(path: Path, keys: Iterable[tuple[str, ...]]) -> dict[tuple[str, ...], str]:
     """What a value in objects is called, by the keys that lead to it: by the last of them, unless another value has that name."""
     keys = list(dict.fromkeys(keys))
@@ -373,7 +370,7 @@ def apart(path: Path, frame: pl.DataFrame) -> pl.DataFrame:
 
 
 def _leaves(keys: tuple[str, ...], dtype: pl.DataType) -> Iterator[tuple[str, ...]]:
-    if isinstance(dtype, pl.Struct) and len(keys) <= _DEEPEST:
+    if isinstance(dtype, pl.Struct) and len(keys) <= DEEPEST:
         for part in dtype.fields:
             yield from _leaves((*keys, part.name), cast("pl.DataType", part.dtype))
     else:
@@ -411,7 +408,7 @@ def _json(source: Source) -> Table:
         raise FormatError(
             source.path, f"not a table: columns of {' and '.join(map(str, sorted(lengths)))} items" if lengths else "no columns"
         )
-    frame = pl.DataFrame({name: _series(name, values) for name, values in columns.items()})
+    frame = pl.DataFrame({name: series(name, values) for name, values in columns.items()})
     return Table(_counted(frame), rejections, frame.height)
 
 
@@ -493,29 +490,6 @@ def _records(source: Source, data: list[Any]) -> dict[str, list[Any]]:
     """Turn a list of objects into columns; a key that a record lacks is empty there."""
     if not data or not all(isinstance(record, dict) for record in data):
         raise FormatError(source.path, "not a table: a list of records {column: value} is needed")
-    records = [dict(_fields(record)) for record in data]
+    records = [dict(leaves(record)) for record in data]
     names = _columns_of(source.path, (keys for record in records for keys in record))
     return {name: [record.get(keys) for record in records] for keys, name in names.items()}
-
-
-def _fields(record: dict[str, Any], within: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
-    """The values of an object, and of the objects in it, with the keys that lead to each."""
-    for name, value in record.items():
-        if isinstance(value, dict) and len(within) < _DEEPEST:
-            yield from _fields(value, (*within, name))
-        elif isinstance(value, dict):
-            # Deeper ones are text: a type of hundreds of levels takes minutes to make.
-            yield (*within, name), json.dumps(value)
-        else:
-            yield (*within, name), value
-
-
-def _series(name: str, values: list[Any]) -> pl.Series:
-    """Numbers, truth values or text; a mixture becomes text."""
-    try:
-        return pl.Series(name, values, strict=True)
-    except (TypeError, pl.exceptions.PolarsError, OverflowError):
-        kinds = {type(v) for v in values if v is not None}
-        if kinds <= {int, float}:
-            return pl.Series(name, [None if v is None else float(v) for v in values], dtype=pl.Float64)
-        return pl.Series(name, [None if v is None else str(v) for v in values], dtype=pl.String)

@@ -13,14 +13,14 @@ from navbound.read import own_positions
 from navbound.read.beside.altitude_unit import HIGH_M, LIKE, AltitudeUnit, note
 from navbound.read.beside.further import Further, Speeds
 from navbound.read.beside.no_speed import NoSpeeds
-from navbound.read.beside.speed_unit import SpeedUnit
+from navbound.read.beside.speed_unit import SPEED, SpeedUnit
 from navbound.read.checks import levels, stated, statements
 from navbound.read.checks.places import NO_PLACE, Nowhere
 from navbound.read.checks.rejections import Kind, Tally
 from navbound.read.checks.repeats import EARLIER, IDENTICAL, UNJUDGED, Repeats, expected, median_rows, separate, usual_rows
 from navbound.read.quantities import POSITION_TIME, QUANTITY, UNITS
-from navbound.read.tables.cells import MISSING, largest, no_field, numbers, on_ground, smallest, words_of_ground
-from navbound.read.tables.columns import POSITION, Assignment, Column, declare, is_header, is_transponder, position_time
+from navbound.read.tables.cells import MISSING, largest, no_field, numbers, on_ground, smallest, within_objects, words_of_ground
+from navbound.read.tables.columns import POSITION, Assignment, Column, declare, is_header, is_transponder, kinds_within, position_time
 from navbound.read.tables.names import Callsigns, one_writing
 from navbound.read.tables.stated_units import is_row_of_units, require_same
 from navbound.read.tables.table import LINE
@@ -146,8 +146,11 @@ class Values:
             # `lastPosition` of readsb is an object and no time.
             self._dated = None
         part = self._with_age(self._with_unread(self._callsigns.as_tracks(part), frame), frame)
+        # A column of states may hold objects of them, too.
+        may_hold = [name for name in (*self._mapping.unused, *(name for name, _ in self._mapping.statements)) if name in frame.columns]
+        within = within_objects(frame.select(may_hold))
         part = self._with_speed(
-            self._further.see(part, frame, (self.tally, SPEEDS)).with_columns(*_reasons(frame, against), *self._raw(frame)), frame
+            self._further.see(part, frame, within, (self.tally, SPEEDS)).with_columns(*_reasons(frame, against), *self._raw(frame)), frame
         )
         for name in POSITION:
             if name in part.columns:
@@ -161,14 +164,14 @@ class Values:
             rows = stated.of_satellites(self._listed_statuses(stated.against_itself(part)))
         else:
             rows = stated.of_satellites(self._listed_statuses(stated.with_faulty_cells(stated.worse_than_level(part), reasons, without)))
-        return stated.with_statements(rows, self._statements(frame))
+        return stated.with_statements(rows, [*self._statements(frame), *self._within(within)])
 
     def _numbers(self, frame: pl.DataFrame, column: Column) -> tuple[pl.Series, pl.Series]:
         """A column in SI, and why its values are none; a speed that is none is not stated, which is no fault of the row."""
-        values, reason = numbers(frame[column.name], column)
+        raw = frame[column.name]
         if column.quantity == "ground_speed_mps":
-            values = self._no_speeds.without(column.name, frame, values, UNITS["mps"][column.unit], (self.tally, SPEEDS))
-        return values, reason
+            raw = self._no_speeds.without(column.name, frame, raw, UNITS["mps"][column.unit], (self.tally, SPEEDS))
+        return numbers(raw, column)
 
     def _with_speed(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
         """The numbers of a speed whose unit nobody states."""
@@ -334,6 +337,18 @@ class Values:
             self._unknown.setdefault(name, {}).update(dict.fromkeys(each.unknown))
         return stated
 
+    def _within(self, within: pl.DataFrame) -> list[tuple[str, Effect, Stated]]:
+        """What objects in fields state, key by key: no good word of one takes back an alarm of another."""
+        kinds = kinds_within(name for name, dtype in within.schema.items() if not no_field(dtype))
+        stated: list[tuple[str, Effect, Stated]] = [
+            (name, kind.effect, statements.stated(kind, within[name])) for name, kind in kinds.items()
+        ]
+        texts = within.select(name for name, dtype in within.schema.items() if dtype == pl.String and name not in kinds)
+        stated += [(name, "alert", statements.alarms(texts[name])) for name in statements.alarming(texts)]
+        for name, _, each in stated:
+            self._unknown.setdefault(name, {}).update(dict.fromkeys(word for word in each.unknown if word != "empty"))
+        return stated
+
     @property
     def unread(self) -> list[str]:
         """Columns, or words of columns, that speak of integrity by their name and are not understood."""
@@ -363,6 +378,7 @@ class Values:
         self._look_like_feet()
         self._units_of_names()
         self.position_doubts += self._further.doubts()
+        self.notes += self._further.notes()
         if self._dated is not None:
             try:
                 self._unit_dated = self._understood([self._dated], self._facts_dated)
@@ -429,11 +445,10 @@ class Values:
             valid_ns = pl.col("time_ns") - (pl.col(_AGE) * 1e9).round().cast(pl.Int64)
             out = out.with_columns(valid_ns.alias(POSITION_TIME)).drop(_AGE)
         if self._speed is not None:
-            out = self._speed.made(out)
             if self._speed.unit:
                 factor = UNITS["mps"][self._speed.unit]
-                speed = self._no_speeds.without(self._speed.name, out, out["ground_speed_mps"], factor, (self.tally, SPEEDS))
-                out = out.with_columns(speed.alias("ground_speed_mps"))
+                out = out.with_columns(self._no_speeds.without(self._speed.name, out, out[SPEED], factor, (self.tally, SPEEDS)))
+            out = self._speed.made(out)
         out = self._speeds.whole(out.with_columns(self._track(out)), left_out=pl.col(_BAD).is_not_null())
         self.whole_seconds &= bool((out["time_ns"].drop_nulls() % 1_000_000_000 == 0).all())
         without = out.filter(pl.col(_BAD).is_not_null())
