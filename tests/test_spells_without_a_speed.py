@@ -93,3 +93,15 @@ def test_live_spells_of_null_add_up(tmp_path: Path, length_s: int, share: float,
     assert set(reasons[:60]) == {None}
     if not stale:
         assert set(reasons) == {None}
+
+
+def test_slow_vehicles_are_compared_as_well(tmp_path: Path) -> None:
+    """At 70 m/s: nine times 49 s at 35 m/s are 15.4 km, of which 5.6 km may be slowing by 1 m/s2 to halfway."""
+    path, share = table(tmp_path / "a.csv", 49, 0.5, ""), 70.0 / SPEED_MPS
+    head, *rows = path.read_text(encoding="ascii").splitlines()
+    slow = []
+    for row in rows:
+        time_s, lat, lon, speed, *more = row.split(",")
+        slow.append(",".join([time_s, f"{40.0 + share * (float(lat) - 40.0):.8f}", lon, speed and "70.0", *more]))
+    path.write_text("\n".join([head, *slow]) + "\n", encoding="ascii")
+    assert navbound.analyze(path, spec="RNP 1").summary.verdict.id == "not_shown"

@@ -410,3 +410,15 @@ def test_an_alarm_in_one_piece_alone_is_one(tmp_path: Path) -> None:
     whole = navbound.analyze(path).summary.verdict
     assert (whole.id, whole.n_stated_alert) == ("not_shown", 1)
     assert navbound.analyze(path, piece_rows=47).summary.verdict == whole
+
+
+@pytest.mark.parametrize("name", ["nav_accuracy", "NavAccur", "accuracy"])
+@pytest.mark.parametrize(("word", "shown"), [("LOW", False), ("Downgraded", False), ("HIGH", True)])
+def test_an_accuracy_in_words_is_heard(tmp_path: Path, name: str, word: str, shown: bool) -> None:
+    verdict = stating(tmp_path, name, "HIGH", word)
+    assert (verdict.id == "inside", verdict.n_stated_alert, verdict.unread) == (shown, 0 if shown else 100, [])
+
+
+def test_an_accuracy_in_numbers_is_a_length(tmp_path: Path) -> None:
+    verdict = stating(tmp_path, "nav_accuracy", 3, 5000)
+    assert (verdict.id, verdict.n_stated_worse, verdict.n_stated_alert) == ("not_shown", 100, 0)

@@ -7,11 +7,13 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import polars as pl
 import pytest
 
 import navbound
 from navbound import FormatError
+from navbound.read.beside import utm
 from navbound.run.directory import Run
 
 if TYPE_CHECKING:
@@ -248,6 +250,17 @@ def _ddmm(degrees: float, letters: str) -> str:
     return f"{int(abs(degrees))}{abs(degrees) % 1 * 60:07.4f}{letters[degrees < 0]}"
 
 
+def _geohash(lat: float, lon: float) -> str:
+    """By halves, as it is described."""
+    low, high, bits = [-180.0, -90.0], [180.0, 90.0], ""
+    for k in range(45):
+        axis, middle = k % 2, (low[k % 2] + high[k % 2]) / 2
+        more = (lon, lat)[axis] >= middle
+        (low if more else high)[axis] = middle
+        bits += "01"[more]
+    return "".join("0123456789bcdefghjkmnpqrstuvwxyz"[int(bits[k : k + 5], 2)] for k in range(0, 45, 5))
+
+
 def _minutes(degrees: float) -> str:
     return f"{int(degrees)} {degrees % 1 * 60:.4f}"
 
@@ -278,6 +291,11 @@ FORMS: dict[str, Callable[[float, float], dict[str, Any]]] = {
     "GeoJSON": lambda lat, lon: {"aux": {"type": "Point", "coordinates": [lon, lat]}},
     "an object in a text": lambda lat, lon: {"aux": json.dumps({"gnss": {"lat": lat, "lon": lon}, "n": 1})},
     "an object of another language": lambda lat, lon: {"aux": str({"lat": lat, "lng": lon, "ok": True})},
+    "a geohash": lambda lat, lon: {"geohash9": _geohash(lat, lon)},
+    "UTM": lambda lat, lon: {
+        "utm_easting": 500_000.0 - 0.9996 * 74_625.0 * (3.0 - lon),
+        "utm_northing": 5_316_790.0 + (lat - 48.0) * 111_150.0,
+    },
     "in one word": lambda lat, lon: {"truelat": lat, "truelon": lon},
     "in another language": lambda lat, lon: {"latitud_real": lat, "longitud_real": lon},
 }
@@ -586,3 +604,11 @@ def test_two_speeds_that_contradict_each_other_show_nothing(tmp_path: Path, name
     added = {"vel_n_mps": other_mps, "vel_e_mps": 0.0} if name == "velocity" else {name: other_mps}
     verdict = analyzed(tmp_path, [row | added for row in rows()]).summary.verdict
     assert (verdict.id, bool(verdict.position_doubts)) == (("not_shown", True) if doubted else ("inside", False))
+
+
+def test_utm_is_that_of_a_known_place() -> None:
+    """The Eiffel Tower, 48.8583 N 2.2945 E, is at 448 252 E 5 411 933 N in zone 31; its neighbours have it beside their borders."""
+    near = np.radians([[48.9, 2.0], [-48.9, 2.0]])
+    east, north = np.array([448_252.0, 448_252.0]), np.array([5_411_933.0, 1e7 - 5_411_933.0])
+    assert np.degrees(utm.places(east, north, near, 0)) == pytest.approx(np.array([[48.8583, 2.2945], [-48.8583, 2.2945]]), abs=2e-4)
+    assert np.degrees(utm.places(east, north, near, 1))[:, 1] == pytest.approx(8.2945, abs=2e-4)

@@ -33,6 +33,30 @@ pub fn of_text(text: &str) -> Option<Written> {
     of_wkt(text).or_else(|| of_iso_6709(text)).or_else(|| of_hemispheres(text)).or_else(|| of_pair(text))
 }
 
+/// Digits of a geohash, and least of them that say where a vehicle is to a kilometre \[1\].
+const GEOHASH: (&[u8; 32], usize) = (b"0123456789bcdefghjkmnpqrstuvwxyz", 6);
+
+/// The middle of the cell of a geohash; any short word may be one, so that a name must say it.
+#[must_use]
+pub fn of_geohash(text: &str) -> Option<Written> {
+    let text = text.trim();
+    if !(GEOHASH.1..=12).contains(&text.len()) {
+        return None;
+    }
+    // Longitude and latitude in turns, half of what is left by each bit.
+    let (mut halves, mut size, mut axis) = ([0.0, 0.0], [360.0, 180.0], 0);
+    for digit in text.bytes() {
+        let value = GEOHASH.0.iter().position(|each| *each == digit.to_ascii_lowercase())?;
+        for bit in [16, 8, 4, 2, 1] {
+            size[axis] *= 0.5;
+            halves[axis] += if value & bit != 0 { size[axis] } else { 0.0 };
+            axis = 1 - axis;
+        }
+    }
+    let [lon, lat] = [halves[0] + 0.5 * size[0] - 180.0, halves[1] + 0.5 * size[1] - 90.0];
+    Some(Written { deg: [lat, lon], ordered: true, by_itself: false })
+}
+
 /// `POINT(2.3 48.9)`, and the same behind its reference system, with further axes.
 fn of_wkt(text: &str) -> Option<Written> {
     let upper = text.to_ascii_uppercase();
@@ -207,6 +231,18 @@ mod tests {
             assert!(near(text, paris) && !of_text(text).unwrap().by_itself, "{text}");
         }
         assert!(near("+48.85667-002.295/", [48.856_67, -2.295]) && near("33 51.4 S 151 12.0 E", [-33.856_67, 151.2]));
+    }
+
+    /// The example of the description of geohashes: 57.64911 N, 10.40744 E.
+    #[test]
+    fn a_geohash_is_the_middle_of_its_cell() {
+        let [lat, lon] = of_geohash("u4pruydqqvj").unwrap().deg;
+        assert!((lat - 57.64911).abs() < 1e-5 && (lon - 10.40744).abs() < 1e-5, "{lat} {lon}");
+        let [lat, lon] = of_geohash("U4PRUY").unwrap().deg;
+        assert!((lat - 57.64911).abs() < 0.003 && (lon - 10.40744).abs() < 0.006, "{lat} {lon}");
+        for text in ["", "u4pru", "u4pruyaaa", "u4pruydqqvj00", "\u{e9}\u{e9}\u{e9}"] {
+            assert!(of_geohash(text).is_none(), "{text}");
+        }
     }
 
     #[test]

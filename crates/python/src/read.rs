@@ -309,10 +309,11 @@ fn no_speeds<'py>(py: Python<'py>, written: PyReadonlyArray1<'py, f64>, unit_mps
 /// Places as they are written: two numbers [deg], whether the first is the latitude, and whether the form says that it is a place.
 type PlaceRow = Option<([f64; 2], bool, bool)>;
 
-/// The places that texts are.
+/// The places that texts are; those of geohashes where a name says so.
 #[pyfunction]
-fn places_of(texts: Vec<Option<String>>) -> Vec<PlaceRow> {
-    let of = |text: &String| place::of_text(text).map(|written| (written.deg, written.ordered, written.by_itself));
+fn places_of(texts: Vec<Option<String>>, geohash: bool) -> Vec<PlaceRow> {
+    let written = |text: &String| if geohash { place::of_geohash(text) } else { place::of_text(text) };
+    let of = |text: &String| written(text).map(|written| (written.deg, written.ordered, written.by_itself));
     texts.iter().map(|text| text.as_ref().and_then(of)).collect()
 }
 

@@ -1,7 +1,7 @@
 //! Whether the way that speeds say is travelled at last: what holds, slow lags and spells without a speed take away from it is within every
 //! limit of its own.
 //!
-//! Over the straight minutes of a track that is fast, its positions may lack five kilometres and a fiftieth of the way by its speeds. Where
+//! Over the straight minutes of a track that moves, its positions may lack five kilometres and a fiftieth of the way by its speeds. Where
 //! reports state no speed the way goes on from the last that did to the next, however far apart they are: no spell without a speed hides what
 //! is lost in it.
 
@@ -9,8 +9,11 @@ use super::neighbours::east_north_m;
 use super::way::chord_share;
 use crate::special::float::hypot;
 
-/// Slower aircraft turn more tightly than the legs of a way follow. Provenance: ours \[m/s\].
+/// Slower aircraft turn more tightly than the legs of a way follow: their way is that of their steps, less what a turn takes of each.
+/// Provenance: ours \[m/s\].
 const FAST_MPS: f64 = 80.0;
+/// What is slower may stand: noise is a way of its own. Provenance: ours \[m/s\].
+const MOVING_MPS: f64 = 15.0;
 /// Share of a way that lies between its ends where it is straight. Provenance: ours \[1\].
 const STRAIGHT: f64 = 0.98;
 /// What the way of the positions of a track may lack in all. Provenance: ours \[m\].
@@ -97,21 +100,23 @@ impl Window {
         let spread_s = (v1 - v0) / CHANGE_MPS2;
         let slower_m =
             if elapsed_ns > EVEN_NS { (0.25 * CHANGE_MPS2 * (elapsed_s * elapsed_s - spread_s * spread_s)).max(0.0) } else { 0.0 };
-        let chord = if self.longest_ns > EVEN_NS { chord_share(v0.min(v1), longest_s) } else { 1.0 };
+        let turns = self.longest_ns > EVEN_NS || v0.min(v1) < FAST_MPS;
+        let chord = if turns { chord_share(v0.min(v1).max(MOVING_MPS), longest_s) } else { 1.0 };
         let least_m = (chord * (even_m - slower_m)).max(0.0);
         self.reported_m = [self.reported_m[0] + even_m, self.reported_m[1] + least_m];
         (self.spoken, self.longest_ns) = (at, 0);
     }
 
-    /// Ways of the positions and by the speeds, where the window is one to judge: fast and straight \[m\].
+    /// Ways of the positions and by the speeds, where the window is one to judge: of what moves, and straight \[m\].
     fn ways_m(&self) -> Option<[f64; 2]> {
         let [steps_m, legs_m] = self.moved_m;
-        let way_m = steps_m.min(legs_m + self.leg.apart_m(&self.last));
         let [even_m, least_m] = self.reported_m;
+        let length_s = self.last.time_ns.saturating_sub(self.begin.time_ns) as f64 * 1e-9;
+        let fast = even_m >= FAST_MPS * length_s;
+        let way_m = if fast { steps_m.min(legs_m + self.leg.apart_m(&self.last)) } else { steps_m };
         // What the aircraft may have flown is no lack, and makes none good.
         let by_speed_m = if way_m < even_m { way_m.max(least_m) } else { even_m };
-        let length_s = self.last.time_ns.saturating_sub(self.begin.time_ns) as f64 * 1e-9;
-        let judged = by_speed_m >= FAST_MPS * length_s && self.begin.apart_m(&self.last) >= STRAIGHT * way_m;
+        let judged = by_speed_m >= MOVING_MPS * length_s && self.begin.apart_m(&self.last) >= STRAIGHT * way_m;
         judged.then_some([way_m, by_speed_m])
     }
 }
@@ -211,6 +216,41 @@ mod tests {
             let speed = |k: u32| Some(if in_spell(k, length) { f64::NAN } else { 240.0 });
             let lack = lack_m(1300, flown(length), speed);
             assert!(lack.abs() < 9.0 * 60.0, "{length}: {lack}");
+        }
+    }
+
+    /// The same of slow aircraft: at half of the speed in nine spells of 49 s.
+    #[test]
+    fn slow_aircraft_are_judged_as_well() {
+        for speed_mps in [40.0, 60.0, 79.0] {
+            let share = speed_mps / 240.0;
+            let half = half_in_spells(49);
+            let speed = |k: u32| Some(if in_spell(k, 49) && k > 0 { f64::NAN } else { speed_mps });
+            let lack = lack_m(1300, |k| share * half(k), speed);
+            // Of each spell half, less 600 m by slowing, and 1 % by a turn in each second.
+            assert!(lack > 8.0 * (0.5 * speed_mps * 49.0 - 625.0 - 0.03 * speed_mps * 49.0), "{speed_mps}: {lack}");
+            assert!(lack_m(1300, |k| speed_mps * f64::from(k), speed).abs() < 50.0, "{speed_mps}");
+        }
+    }
+
+    /// A glider that circles, and one that turns about each ten seconds: a shortened way is no lack.
+    #[test]
+    fn tight_turns_of_slow_aircraft_lack_nothing() {
+        for (speed_mps, rate_radps, step_s) in [(28.0, 0.26, 1), (28.0, 0.1, 5), (60.0, 0.05, 10), (45.0, 0.35, 1)] {
+            let mut balance = Balance::default();
+            for k in 0..720 {
+                let (time_s, half_s) = (f64::from(k * step_s), 10.0);
+                // Arcs to either side in turn.
+                let (n, within_s) = ((time_s / half_s).floor(), time_s % half_s);
+                let (chord_m, turned) = (2.0 * speed_mps / rate_radps * (0.5 * rate_radps * half_s).sin(), rate_radps * within_s);
+                let (radius_m, begin) = (speed_mps / rate_radps, 0.5 * rate_radps * half_s);
+                let north_m = n * chord_m + radius_m * (begin.sin() - (begin - turned).sin());
+                let east_m = radius_m * ((begin - turned).cos() - begin.cos()) * if n as i64 % 2 == 0 { 1.0 } else { -1.0 };
+                let (lat_rad, lon_rad) = (0.8 + north_m / 6.368e6, 0.1 + east_m / (6.368e6 * 0.8_f64.cos()));
+                balance.see(At { time_ns: i64::from(k * step_s) * 1_000_000_000, lat_rad, lon_rad, speed_mps });
+            }
+            let [way_m, by_speed_m] = balance.ways_m;
+            assert!(by_speed_m - way_m < 0.005 * by_speed_m + 1.0, "{speed_mps} {step_s}: {way_m} {by_speed_m}");
         }
     }
 

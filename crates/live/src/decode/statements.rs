@@ -46,11 +46,12 @@ impl Places {
         let parts = parts(key);
         let any = |words: &BTreeSet<String>| parts.iter().any(|part| words.contains(part.trim_end_matches(|c: char| c.is_ascii_digit())));
         let written = match value {
+            Value::String(text) if plain(key).contains("geohash") => place::of_geohash(text),
             Value::String(text) => place::of_text(text),
             Value::Array(all) => numbers(all).map(|deg| Written { deg, ordered: false, by_itself: false }),
             _ => None,
         };
-        let named = any(&self.pair);
+        let named = any(&self.pair) || plain(key).contains("geohash");
         let Some(written) = written.filter(|written| (written.by_itself || named) && written.deg != [0.0; 2] && !any(&self.of_others))
         else {
             return false;

@@ -16,6 +16,7 @@ import numpy as np
 import polars as pl
 
 from navbound import _core
+from navbound.read.beside import utm
 from navbound.read.checks.places import east_north_m
 from navbound.read.checks.statements import (
     INERTIAL_APART_M,
@@ -111,9 +112,9 @@ def find(free: Sequence[str], declared: Iterable[str]) -> list[Place]:
         if of is not None and of.axis in axes:
             places.append(Place((name,), of.axis, of.whose, of.inertial))
         elif of is None and axes == [LAT, LON] and not is_no_vehicle(name):
-            places.append(Place((name,), None, (name,), inertial=keeps_inertial(name), by_name=is_pair(name)))
-    ecef = _ecef(free) if axes == [LAT, LON] else None
-    return places if ecef is None else [*places, Place(ecef, None, ecef, inertial=False)]
+            places.append(Place((name,), None, (name,), inertial=keeps_inertial(name), by_name=is_pair(name) or _is_geohash(name)))
+    several = (_ecef(free), _utm(free)) if axes == [LAT, LON] else ()
+    return [*places, *(Place(names, None, names, inertial=False) for names in several if names is not None)]
 
 
 def _ecef(free: Sequence[str]) -> tuple[str, str, str] | None:
@@ -123,6 +124,20 @@ def _ecef(free: Sequence[str]) -> tuple[str, str, str] | None:
         if axes.keys() >= {"x", "y", "z"}:
             return axes["x"], axes["y"], axes["z"]
     return None
+
+
+def _utm(free: Sequence[str]) -> tuple[str, str] | None:
+    """Two columns of an easting and a northing of UTM by their names; those of other grids are not known."""
+    named = [(name, set(name_parts(name)) - {"m"}) for name in free]
+    axes = [[name for name, parts in named if "utm" in parts and parts & words] for words in (_EASTINGS, _NORTHINGS)]
+    return (axes[0][0], axes[1][0]) if all(len(each) == 1 for each in axes) else None
+
+
+_EASTINGS, _NORTHINGS = frozenset(("e", "x", "east", "easting")), frozenset(("n", "y", "north", "northing"))
+
+
+def _is_geohash(name: str) -> bool:
+    return "geohash" in re.sub(r"[^a-z]", "", name.lower())
 
 
 def _bare(name: str) -> str:
@@ -149,7 +164,7 @@ class OtherPlaces:
         for place in self._places:
             if not set(place.names) <= set(frame.columns):
                 continue
-            n, forms = _read(place, frame)
+            n, forms = _read(place, frame, own)
             for form, there in forms:
                 apart_m = _apart_m(place, own, there)
                 before = self._forms.get((place, form), Form())
@@ -182,8 +197,10 @@ def _apart_m(place: Place, own: NDArray[np.float64], there: NDArray[np.float64])
     return along_m
 
 
-def _read(place: Place, frame: pl.DataFrame) -> tuple[int, list[tuple[str, NDArray[np.float64]]]]:
+def _read(place: Place, frame: pl.DataFrame, own: NDArray[np.float64]) -> tuple[int, list[tuple[str, NDArray[np.float64]]]]:
     """How many numbers are there, and the coordinates in each form that they may have."""
+    if len(place.names) == _GRID:
+        return _of_utm(*(_floats(frame[name].cast(pl.Float64, strict=False)) for name in place.names), own)
     if len(place.names) > 1:
         return _of_ecef(frame.select(place.names))
     column = frame[place.names[0]]
@@ -237,8 +254,9 @@ def _of_pairs(column: pl.Series, *, by_name: bool) -> tuple[int, list[tuple[str,
     elif dtype == pl.String:
         both = np.full((len(column), 2), np.nan)
         # Few texts have a place; those without its marks are not looked at one by one.
-        marked = column.str.contains(_MARKS).fill_null(value=False)
-        for at, place in zip(marked.arg_true().to_list(), _core.places_of(column.filter(marked).to_list()), strict=True):
+        geohash = _is_geohash(column.name)
+        marked = (column.is_not_null() if geohash else column.str.contains(_MARKS)).fill_null(value=False)
+        for at, place in zip(marked.arg_true().to_list(), _core.places_of(column.filter(marked).to_list(), geohash), strict=True):
             if place is not None and (by_name or place[2]):
                 both[at], ordered[at] = place[0], place[1]
     else:
@@ -250,6 +268,21 @@ def _of_pairs(column: pl.Series, *, by_name: bool) -> tuple[int, list[tuple[str,
         place_rad[~((np.abs(place_rad[:, 0]) <= 0.5 * np.pi) & (np.abs(place_rad[:, 1]) <= 2.0 * np.pi))] = np.nan
         read.append((form, place_rad))
     return column.len() - column.null_count(), read
+
+
+_GRID = 2
+"""Columns of a place in a plane. [1]"""
+
+
+def _of_utm(
+    east_m: NDArray[np.float64], north_m: NDArray[np.float64], own: NDArray[np.float64]
+) -> tuple[int, list[tuple[str, NDArray[np.float64]]]]:
+    """In the zone of the position or one beside it, whichever is nearest: a file keeps one over a border."""
+    east_m[(east_m == 0.0) & (north_m == 0.0)] = np.nan
+    there = np.stack([utm.places(east_m, north_m, own, zone) for zone in (-1, 0, 1)])
+    apart_m = np.stack([np.hypot(*east_north_m(own, each).T) for each in there])
+    nearest = np.where(np.isfinite(apart_m), apart_m, np.inf).argmin(axis=0)
+    return int(np.isfinite(east_m).sum()), [("utm", there[nearest, np.arange(len(own))])]
 
 
 def _of_ecef(frame: pl.DataFrame) -> tuple[int, list[tuple[str, NDArray[np.float64]]]]:

@@ -153,6 +153,14 @@ READSB_TYPE = Kind(
 )
 """The `type` of readsb's aircraft, by the rule of its live lines."""
 
+ACCURACY_WORDS = Kind(
+    "alert",
+    _words("nav_accuracy navigation_accuracy nav_accur nav_acc position_accuracy pos_accuracy gps_accuracy gnss_accuracy accuracy accur"),
+    _words("low very_low poor bad downgraded downgrade degraded unreliable none no"),
+    _words("high very_high good ok normal full fine"),
+)
+"""An accuracy in words, as flight management systems have it (NAV ACCUR HIGH or LOW); in numbers a column of such a name is a length."""
+
 _SSM = _words("gps gnss nav pos position lat lon latitude longitude")
 """Whose sign and status matrix a column is."""
 

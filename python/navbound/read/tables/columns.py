@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from navbound.errors import FormatError, InputError
 from navbound.read.beside.places import Place, find
 from navbound.read.checks.statements import (
+    ACCURACY_WORDS,
     AGE,
     NUC,
     READSB_TYPE,
@@ -234,7 +235,7 @@ def assign(
     _require(columns, times, names, path, needs)
     _refuse_twins(columns, set(declared or {}), names, path)
     free = [n for n in names if n not in taken]
-    kinds = _kinds(free, {_plain(name)[0] for name in names})
+    kinds = _kinds(free, {_plain(name)[0] for name in names}, texts)
     if tuple(needs) != POSITION:
         # A level counts with any dilution: an error above it is misleading all the same.
         kinds = {name: kind for name, kind in kinds.items() if kind is None or not math.isfinite(kind.above)}
@@ -253,9 +254,11 @@ def assign(
     return Assignment(columns, times, unused, statements, again, places, absent, speed, stated_of)
 
 
-def _kinds(free: list[str], plain: set[str]) -> dict[str, Kind | None]:
+def _kinds(free: list[str], plain: set[str], texts: Container[str]) -> dict[str, Kind | None]:
     """What columns that nobody reads state of the validity or the integrity of positions, beside the plain names of all columns."""
     kinds = {name: kind_of(_plain(name)[0]) for name in free}
+    in_words = [name for name in free if name in texts and _parted(name) in ACCURACY_WORDS.names]
+    kinds |= dict.fromkeys(in_words, ACCURACY_WORDS)
     if plain & TRANSPONDER:
         kinds.pop("alert", None)
     if plain >= READSB:
