@@ -422,3 +422,11 @@ def test_an_accuracy_in_words_is_heard(tmp_path: Path, name: str, word: str, sho
 def test_an_accuracy_in_numbers_is_a_length(tmp_path: Path) -> None:
     verdict = stating(tmp_path, "nav_accuracy", 3, 5000)
     assert (verdict.id, verdict.n_stated_worse, verdict.n_stated_alert) == ("not_shown", 100, 0)
+
+
+@pytest.mark.parametrize(
+    ("fine", "bad"),
+    [("status=ok;alert=none", "status=ok;alert=none;integrity=failed"), ("no alert | RAIM ok", "no alert | RAIM lost")],
+)
+def test_a_good_word_of_one_statement_takes_back_no_alarm_of_another(tmp_path: Path, fine: str, bad: str) -> None:
+    assert (stating(tmp_path, "info", fine, bad).id, stating(tmp_path, "info", fine, fine).id) == ("not_shown", "inside")

@@ -296,6 +296,7 @@ FORMS: dict[str, Callable[[float, float], dict[str, Any]]] = {
         "utm_easting": 500_000.0 - 0.9996 * 74_625.0 * (3.0 - lon),
         "utm_northing": 5_316_790.0 + (lat - 48.0) * 111_150.0,
     },
+    "an object in a list": lambda lat, lon: {"aux": [{"of": "gps", "position": {"lat": lat, "lon": lon}}]},
     "in one word": lambda lat, lon: {"truelat": lat, "truelon": lon},
     "in another language": lambda lat, lon: {"latitud_real": lat, "longitud_real": lon},
 }
@@ -375,6 +376,13 @@ def test_an_origin_and_a_receiver_without_a_fix_contradict_nothing(tmp_path: Pat
 def test_words_in_a_list_are_read_as_a_text(tmp_path: Path, flags: list[str], shown: bool) -> None:
     table = [row | {"flags": flags if 100 <= k < 200 else []} for k, row in enumerate(rows())]
     assert (analyzed(tmp_path, table).summary.verdict.id == "inside") == shown
+
+
+@pytest.mark.parametrize(("valid", "shown"), [(True, True), (False, False)])
+def test_objects_in_a_list_are_read_each(tmp_path: Path, valid: bool, shown: bool) -> None:
+    sensors = [{"name": "a", "valid": True}, {"name": "b", "valid": valid}]
+    verdict = analyzed(tmp_path, [row | {"sensors": sensors} for row in rows()]).summary.verdict
+    assert (verdict.id == "inside") == shown
 
 
 @pytest.mark.parametrize(("source", "n_ok"), [("GPS", None), ("gps/ins", None), ("IRS", 0), ("inertial", 0)])

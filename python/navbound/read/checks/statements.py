@@ -640,7 +640,7 @@ def alarming(texts: pl.DataFrame) -> list[str]:
 def alarms(raw: pl.Series) -> Stated:
     """Read a column of free texts that nothing else reads: a message of a receiver or a crew. A text that takes an alarm back is named."""
     raw = _printable(raw)
-    against = _alarm(raw)
+    against = _alarm_in_any_part(raw)
     words = pl.select(pl.when(against).then(raw.str.slice(0, _SHOWN_CHARACTERS))).to_series()
     taken_back = _plain_text(raw).str.contains(_ALARM).fill_null(value=False) & ~against
     return Stated(words, raw.filter(taken_back).unique(maintain_order=True).head(SHOWN).to_list())
@@ -659,6 +659,23 @@ def _alarm(raw: pl.Series, alarms: str = _ALARM) -> pl.Series:
     """Which texts state an alarm that they do not take back."""
     alarm, none, outright = (_plain_text(raw).str.contains(words).fill_null(value=False) for words in (alarms, _NONE, _NO_POSITION_WORDS))
     return outright | (alarm & ~none)
+
+
+_PARTS = r"[;|]"
+"""What parts statements of a text that say nothing of each other."""
+
+
+def _alarm_in_any_part(raw: pl.Series) -> pl.Series:
+    """The same, where a good word of one statement of a text takes back no alarm of another: `alert=none;integrity=failed`."""
+    against = _alarm(raw)
+    several = (raw.str.contains(_PARTS) & _plain_text(raw).str.contains(_ALARM) & ~against).fill_null(value=False)
+    if not several.any():
+        return against
+    parts = pl.DataFrame({"at": several.arg_true(), "part": raw.filter(several).str.replace_all(_PARTS, ";").str.split(";")}).explode(
+        "part"
+    )
+    alarming_rows = parts.filter(_alarm(parts["part"]))["at"].unique()
+    return against | pl.int_range(len(raw), eager=True).cast(alarming_rows.dtype).is_in(alarming_rows.implode())
 
 
 def _listed(words: Iterable[str]) -> list[str]:

@@ -119,16 +119,24 @@ _LISTED = 20
 
 
 def within_objects(frame: pl.DataFrame) -> pl.DataFrame:
-    """What objects of JSON state that are written into the fields of text columns: a column of each key, named behind that of its field."""
-    written = [name for name, dtype in frame.schema.items() if dtype == pl.String and frame[name].str.contains(_OBJECT).any()]
+    """What objects in fields state, of JSON in text columns and in lists: a column of each key, named behind that of its field."""
     columns = list[pl.Series]()
-    for name in written:
-        records = [_object(cell) for cell in frame[name]]
+    for name, dtype in frame.schema.items():
+        if isinstance(dtype, pl.List) and isinstance(dtype.inner, pl.Struct):
+            records = [dict(leaves(_numbered(cell or []))) for cell in frame[name].to_list()]
+        elif dtype == pl.String and frame[name].str.contains(_OBJECT).any():
+            records = [_object(cell) for cell in frame[name]]
+        else:
+            continue
         keys = dict.fromkeys(keys for record in records for keys in record)
         columns += [series(".".join((name, *each)), [record.get(each) for record in records]) for each in keys]
     taken = set(frame.columns)
-    unique = {each.name: each for each in columns if each.name not in taken}
-    return pl.DataFrame(list(unique.values()))
+    return pl.DataFrame(list({each.name: each for each in columns if each.name not in taken}.values()))
+
+
+def _numbered(listed: list[Any]) -> dict[str, Any]:
+    """The first objects of a list, by their numbers."""
+    return {str(k): each for k, each in enumerate(listed[:_LISTED]) if isinstance(each, dict)}
 
 
 def _object(cell: str | None) -> dict[tuple[str, ...], Any]:
@@ -140,9 +148,7 @@ def _object(cell: str | None) -> dict[tuple[str, ...], Any]:
             content = json.loads(text)
         except (ValueError, RecursionError):
             continue
-        listed = content[:_LISTED] if isinstance(content, list) else []
-        content = content if isinstance(content, dict) else {str(k): each for k, each in enumerate(listed) if isinstance(each, dict)}
-        return dict(leaves(content))
+        return dict(leaves(content if isinstance(content, dict) else _numbered(content if isinstance(content, list) else [])))
     return {}
 
 
