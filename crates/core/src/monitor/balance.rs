@@ -199,7 +199,7 @@ mod tests {
     /// The rows of the spells are missing: of 49 s an aircraft at 60 degrees of bank leaves 0.57 of its way.
     #[test]
     fn what_is_lost_in_silences_is_lacking_where_no_turn_explains_it() {
-        let speed = |length: u32| move |k: u32| (!(in_spell(k, length) && k % 120 > 0)).then_some(240.0);
+        let speed = |length: u32| move |k: u32| (!in_spell(k, length) || k.is_multiple_of(120)).then_some(240.0);
         assert!(lack_m(1300, half_in_spells(20), speed(20)) > 8.0 * 1500.0);
         assert!(lack_m(1300, half_in_spells(49), speed(49)) < 5000.0);
     }

@@ -200,7 +200,8 @@ def _apart_m(place: Place, own: NDArray[np.float64], there: NDArray[np.float64])
 def _read(place: Place, frame: pl.DataFrame, own: NDArray[np.float64]) -> tuple[int, list[tuple[str, NDArray[np.float64]]]]:
     """How many numbers are there, and the coordinates in each form that they may have."""
     if len(place.names) == _GRID:
-        return _of_utm(*(_floats(frame[name].cast(pl.Float64, strict=False)) for name in place.names), own)
+        east_m, north_m = (_floats(frame[name].cast(pl.Float64, strict=False)) for name in place.names)
+        return _of_utm(east_m, north_m, own)
     if len(place.names) > 1:
         return _of_ecef(frame.select(place.names))
     column = frame[place.names[0]]
