@@ -35,6 +35,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    _Forms = list[tuple[str, NDArray[np.float64] | None]]
+    """The coordinates in each form that they may have; none where it reads nothing."""
+
 Axis = Literal["est_lat_rad", "est_lon_rad"]
 LAT: Axis = "est_lat_rad"
 LON: Axis = "est_lon_rad"
@@ -166,9 +169,11 @@ class OtherPlaces:
                 continue
             n, forms = _read(place, frame, own)
             for form, there in forms:
-                apart_m = _apart_m(place, own, there)
                 before = self._forms.get((place, form), Form())
-                self._forms[place, form] = before.with_rows(there[:, 0], there[:, 1], apart_m, n)
+                if there is None:
+                    self._forms[place, form] = before._replace(n=before.n + n)
+                else:
+                    self._forms[place, form] = before.with_rows(there[:, 0], there[:, 1], _apart_m(place, own, there), n)
 
     def _nearest(self, place: Place) -> Form | None:
         """In the form that brings it nearest, of those that read its numbers."""
@@ -197,7 +202,7 @@ def _apart_m(place: Place, own: NDArray[np.float64], there: NDArray[np.float64])
     return along_m
 
 
-def _read(place: Place, frame: pl.DataFrame, own: NDArray[np.float64]) -> tuple[int, list[tuple[str, NDArray[np.float64]]]]:
+def _read(place: Place, frame: pl.DataFrame, own: NDArray[np.float64]) -> tuple[int, _Forms]:
     """How many numbers are there, and the coordinates in each form that they may have."""
     if len(place.names) == _GRID:
         east_m, north_m = (_floats(frame[name].cast(pl.Float64, strict=False)) for name in place.names)
@@ -210,12 +215,12 @@ def _read(place: Place, frame: pl.DataFrame, own: NDArray[np.float64]) -> tuple[
     return _of_axis(column, place.axis, radians="rad" in name_parts(column.name))
 
 
-def _of_axis(column: pl.Series, axis: Axis, *, radians: bool) -> tuple[int, list[tuple[str, NDArray[np.float64]]]]:
+def _of_axis(column: pl.Series, axis: Axis, *, radians: bool) -> tuple[int, _Forms]:
     numbers = _angles(column) if column.dtype == pl.String else _floats(column)
     # A receiver without a fix writes 0.
     numbers[numbers == 0.0] = np.nan
     forms, most = ({"rad": 1.0} if radians else _FORMS), 0.5 * np.pi if axis == LAT else 2.0 * np.pi
-    read: list[tuple[str, NDArray[np.float64]]] = []
+    read: _Forms = []
     angles = {form: numbers * factor for form, factor in forms.items()}
     if not radians:
         # Degrees and minutes in one number, as sentences of NMEA have them.
@@ -246,24 +251,26 @@ def _angles(column: pl.Series) -> NDArray[np.float64]:
     return pl.select(pl.when(against).then(-degrees).otherwise(degrees)).to_series().fill_null(math.nan).to_numpy(writable=True)
 
 
-def _of_pairs(column: pl.Series, *, by_name: bool) -> tuple[int, list[tuple[str, NDArray[np.float64]]]]:
+def _of_pairs(column: pl.Series, *, by_name: bool) -> tuple[int, _Forms]:
     """Two numbers in one field, in either order where the form does not say which."""
     dtype = column.dtype
     ordered = np.zeros(len(column), dtype=bool)
     if by_name and isinstance(dtype, pl.List) and pl.Series(dtype=dtype.inner).dtype.is_numeric():
         both = np.column_stack([_floats(column.list.get(k, null_on_oob=True)) for k in (0, 1)])
     elif dtype == pl.String:
-        both = np.full((len(column), 2), np.nan)
         # Few texts have a place; those without its marks are not looked at one by one.
         geohash = _is_geohash(column.name)
         marked = (column.is_not_null() if geohash else column.str.contains(_MARKS)).fill_null(value=False)
+        if not marked.any():
+            return column.len() - column.null_count(), [("lat, lon", None), ("lon, lat", None)]
+        both = np.full((len(column), 2), np.nan)
         for at, place in zip(marked.arg_true().to_list(), _core.places_of(column.filter(marked).to_list(), geohash), strict=True):
             if place is not None and (by_name or place[2]):
                 both[at], ordered[at] = place[0], place[1]
     else:
         return 0, []
     both[(both == 0.0).all(axis=1)] = np.nan
-    read: list[tuple[str, NDArray[np.float64]]] = []
+    read: _Forms = []
     for form, there in (("lat, lon", both), ("lon, lat", np.where(ordered[:, None], both, both[:, ::-1]))):
         place_rad = np.radians(there)
         place_rad[~((np.abs(place_rad[:, 0]) <= 0.5 * np.pi) & (np.abs(place_rad[:, 1]) <= 2.0 * np.pi))] = np.nan
@@ -275,9 +282,7 @@ _GRID = 2
 """Columns of a place in a plane. [1]"""
 
 
-def _of_utm(
-    east_m: NDArray[np.float64], north_m: NDArray[np.float64], own: NDArray[np.float64]
-) -> tuple[int, list[tuple[str, NDArray[np.float64]]]]:
+def _of_utm(east_m: NDArray[np.float64], north_m: NDArray[np.float64], own: NDArray[np.float64]) -> tuple[int, _Forms]:
     """In the zone of the position or one beside it, whichever is nearest: a file keeps one over a border."""
     east_m[(east_m == 0.0) & (north_m == 0.0)] = np.nan
     there = np.stack([utm.places(east_m, north_m, own, zone) for zone in (-1, 0, 1)])
@@ -286,7 +291,7 @@ def _of_utm(
     return int(np.isfinite(east_m).sum()), [("utm", there[nearest, np.arange(len(own))])]
 
 
-def _of_ecef(frame: pl.DataFrame) -> tuple[int, list[tuple[str, NDArray[np.float64]]]]:
+def _of_ecef(frame: pl.DataFrame) -> tuple[int, _Forms]:
     from navbound import gnss  # noqa: PLC0415  (few tables have such columns)
 
     axes = np.column_stack([_floats(frame[name].cast(pl.Float64, strict=False)) for name in frame.columns])
