@@ -225,12 +225,7 @@ def assign(
                 taken.add(assigned.name)
     if (altitude := _of_phone(columns.get("altitude_m"), names)) is not None:
         columns["altitude_m"] = altitude
-    if not times:
-        times = _times([n for n in names if n not in taken], of_day)
-        taken |= {c.name for c in times}
-    times = _whole_week(times, [n for n in names if n not in taken], path)
-    taken |= {c.name for c in times}
-    times = _whole_day(times, [n for n in names if n not in taken], of_day, path)
+    times = _of_whole_times(times, [n for n in names if n not in taken], of_day, path)
     taken |= {c.name for c in times}
     _require(columns, times, names, path, needs)
     _refuse_twins(columns, set(declared or {}), names, path)
@@ -252,6 +247,18 @@ def assign(
     places = find([*(n for n in unused if n not in compared), *stating], stated_of) if tuple(needs) == POSITION else []
     speed = "" if tuple(needs) != POSITION or "ground_speed_mps" in columns.keys() | absent else _speed_without_unit(unused)
     return Assignment(columns, times, unused, statements, again, places, absent, speed, stated_of)
+
+
+def _of_whole_times(declared: list[Column], free: list[str], of_day: Container[str], path: Path) -> list[Column]:
+    """The columns that state times together: those that are declared or known by name, and what they are not whole without."""
+    times = declared or _times(free, of_day)
+    times = _whole_week(times, _without(free, times), path)
+    return _whole_day(times, _without(free, times), of_day, path)
+
+
+def _without(names: list[str], columns: list[Column]) -> list[str]:
+    taken = {column.name for column in columns}
+    return [name for name in names if name not in taken]
 
 
 def _kinds(free: list[str], plain: set[str], texts: Container[str]) -> dict[str, Kind | None]:
