@@ -17,7 +17,7 @@ import pytest
 from navbound import FormatError, InputError, dme, gnss, sbas
 from navbound.exit_status import UNREADABLE
 from navbound.read import read
-from navbound.read.tables.columns import _plain
+from navbound.read.columns.naming import plain_form
 from navbound.storage import packed
 
 MB = 1 << 20
@@ -111,7 +111,7 @@ def pattern(name: str) -> tuple[str, str | None]:
     ],
 )
 def test_names_and_units_are_what_the_pattern_says(name: str) -> None:
-    assert _plain(name) == pattern(name)
+    assert plain_form(name) == pattern(name)
 
 
 BUDGET_S_PER_BYTE = 2e-6

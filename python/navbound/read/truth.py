@@ -15,7 +15,7 @@ from navbound import _core, status
 from navbound.errors import ConflictError, InputError
 from navbound.read.checks.established import contradicting, established
 from navbound.read.checks.stated import ALERT, CONTAINMENT, LEVEL_SIGMAS, TWO_DRMS
-from navbound.read.tables.columns import NO_COLUMN
+from navbound.read.columns.column import NO_COLUMN
 from navbound.read.tables.epochs import read_beside
 from navbound.records.truth import TruthDoubts
 from navbound.time import utc_text

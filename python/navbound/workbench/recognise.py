@@ -72,7 +72,7 @@ def _words(path: Path) -> str:
 
 def _text(source: Source) -> str:
     """What a text holds: a table by the names of its columns, TOML, or a navigation database by the length of its lines."""
-    from navbound.read.tables.columns import is_header  # noqa: PLC0415 - loads tables
+    from navbound.read.columns.assign import is_header  # noqa: PLC0415 - loads tables
     from navbound.read.tables.table import layout_of, lines_of  # noqa: PLC0415
 
     text = source.content.decode("utf-8-sig", "replace")

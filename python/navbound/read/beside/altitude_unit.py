@@ -13,8 +13,8 @@ import numpy as np
 import polars as pl
 
 from navbound.read.checks.statements import name_parts
+from navbound.read.columns.naming import declare
 from navbound.read.quantities import UNITS
-from navbound.read.tables.columns import declare
 from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from navbound.read.tables.columns import Column
+    from navbound.read.columns.column import Column
 
 ALTITUDE, HEIGHT, CLIMB = "altitude_m", "est_h_m", "vertical_rate_mps"
 HEAD_ROWS = 5000

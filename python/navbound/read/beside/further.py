@@ -15,9 +15,10 @@ from navbound.read.beside.places import OtherPlaces
 from navbound.read.checks.plausible import Limits
 from navbound.read.checks.repeats import SAME_PLACE_M
 from navbound.read.checks.statements import STALE_AFTER_S
+from navbound.read.columns.column import NO_COLUMN, POSITION
+from navbound.read.columns.naming import declare
 from navbound.read.quantities import UNITS
 from navbound.read.tables.cells import largest, no_field, numbers
-from navbound.read.tables.columns import NO_COLUMN, POSITION, declare
 from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, understand
 from navbound.units import EARTH_RADIUS_M
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
     from navbound.read.beside.no_speed import NoSpeeds
     from navbound.read.checks.rejections import Tally
-    from navbound.read.tables.columns import Assignment, Column
+    from navbound.read.columns.column import Assignment, Column
 
 APART_M = 100.0
 """Two columns of one position contradict each other beyond it: two antennas and two filters do not. Provenance: ours. [m]"""

@@ -14,8 +14,9 @@ import numpy as np
 import polars as pl
 
 from navbound import _core
+from navbound.read.columns.column import NO_COLUMN
+from navbound.read.columns.naming import declare
 from navbound.read.tables.cells import floats
-from navbound.read.tables.columns import NO_COLUMN, declare
 from navbound.read.tables.table import LINE
 
 if TYPE_CHECKING:

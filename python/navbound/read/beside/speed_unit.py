@@ -13,8 +13,9 @@ import polars as pl
 
 from navbound import _core
 from navbound.read.checks.places import east_north_m
+from navbound.read.columns.column import NO_COLUMN
+from navbound.read.columns.naming import declare
 from navbound.read.quantities import UNITS
-from navbound.read.tables.columns import NO_COLUMN, declare
 from navbound.words.plurals import counted
 
 if TYPE_CHECKING:

@@ -8,12 +8,13 @@ import numpy as np
 import polars as pl
 
 from navbound.read.checks.plausible import plausible_rows
+from navbound.read.columns.column import NO_COLUMN
+from navbound.read.columns.naming import declare
 from navbound.read.motion.balance import Balance
 from navbound.read.motion.counts import Comparison
 from navbound.read.motion.directions import Directions
 from navbound.read.motion.scatter import Steps
 from navbound.read.motion.ways import LONGEST_STEP_S, OFFSET_M, WINDOW_NS, Ways
-from navbound.read.tables.columns import NO_COLUMN, declare
 from navbound.table.columns import HORIZONTAL
 
 if TYPE_CHECKING:

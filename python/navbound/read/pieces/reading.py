@@ -11,11 +11,13 @@ import polars as pl
 from navbound.errors import FormatError
 from navbound.read.checks.rejections import Rejections, Tally
 from navbound.read.checks.repeats import left_out, shared_words, unread_rows, without_shared
+from navbound.read.columns.assign import assign
+from navbound.read.columns.column import POSITION
+from navbound.read.columns.lacking import truth_as_position
 from navbound.read.pieces.chunks import CHUNK_BYTES, Chunks
 from navbound.read.pieces.order import Pieces
 from navbound.read.pieces.parquet import batches, is_parquet
 from navbound.read.source import Source, digested
-from navbound.read.tables.columns import POSITION, assign, truth_as_position
 from navbound.read.tables.dates import of_day
 from navbound.read.tables.stated_units import HEAD_BYTES, require_same_in_remarks
 from navbound.read.tables.table import LINE, Layout, layout_of, rows_of
@@ -25,7 +27,7 @@ from navbound.storage.frames import Spool
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from navbound.read.tables.columns import Assignment
+    from navbound.read.columns.column import Assignment
     from navbound.records.run import InputFile, Rejection
 
 PIECE_ROWS = 1 << 17

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from navbound.read.tables.columns import Column
+    from navbound.read.columns.column import Column
 
 MISSING = r"(?i)^([+-]?nan(\(\w*\))?)?$"
 """Texts of a number that is missing."""

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from navbound.read.tables.columns import Column
+    from navbound.read.columns.column import Column
 
 _OF_DAY = r"(?i)^(\d{1,2}):(\d{2})(?::(\d{2}(?:[.,]\d+)?))?\s*([ap]m)?\s*(Z|UTC|GMT|[+-]\d\d:?\d\d)?$"
 _MIDNIGHT = r"[T ]0?0:00(:00(\.0+)?)?$"

@@ -15,8 +15,10 @@ from navbound.read.checks.places import NO_PLACE, Nowhere
 from navbound.read.checks.rejections import Rejections, Tally
 from navbound.read.checks.repeats import left_out, shared_words, unread_rows, without_shared
 from navbound.read.checks.stated import of_counted_satellites
+from navbound.read.columns.assign import assign
+from navbound.read.columns.column import POSITION, Assignment
+from navbound.read.columns.lacking import truth_as_position
 from navbound.read.source import Source, load
-from navbound.read.tables.columns import POSITION, Assignment, assign, truth_as_position
 from navbound.read.tables.dates import of_day
 from navbound.read.tables.stated_units import require_same_in_remarks
 from navbound.read.tables.table import LINE, Table, table

@@ -6,14 +6,14 @@ import re
 from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError
+from navbound.read.columns.naming import NO_UNIT, declare
 from navbound.read.quantities import QUANTITY, UNITS
-from navbound.read.tables.columns import NO_UNIT, declare
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-    from navbound.read.tables.columns import Assignment
+    from navbound.read.columns.column import Assignment
 
 _TELLING = frozenset(unit for si, units in UNITS.items() if si in {"rad", "m", "m2", "mps", "hpa"} for unit in units)
 _LEAST = 2

@@ -11,15 +11,15 @@ import polars as pl
 from navbound import _core
 from navbound.errors import FormatError
 from navbound.read.checks.statements import name_parts
+from navbound.read.columns.naming import declare
 from navbound.read.tables import dates
-from navbound.read.tables.columns import declare
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
 
-    from navbound.read.tables.columns import Column
+    from navbound.read.columns.column import Column
 
 _FIRST_NS = 0
 _LAST_NS = 3_786_912_018_000_000_000

@@ -18,9 +18,12 @@ from navbound.read.checks import levels, stated, statements
 from navbound.read.checks.places import NO_PLACE, Nowhere
 from navbound.read.checks.rejections import Kind, Tally
 from navbound.read.checks.repeats import EARLIER, IDENTICAL, UNJUDGED, Repeats, expected, median_rows, separate, usual_rows
+from navbound.read.columns.assign import is_header, kinds_within
+from navbound.read.columns.column import POSITION, Assignment, Column, is_transponder
+from navbound.read.columns.naming import declare
+from navbound.read.columns.timed import position_time
 from navbound.read.quantities import POSITION_TIME, QUANTITY, UNITS
 from navbound.read.tables.cells import MISSING, largest, no_field, numbers, on_ground, smallest, within_objects, words_of_ground
-from navbound.read.tables.columns import POSITION, Assignment, Column, declare, is_header, is_transponder, kinds_within, position_time
 from navbound.read.tables.names import Callsigns, one_writing
 from navbound.read.tables.stated_units import is_row_of_units, require_same
 from navbound.read.tables.table import LINE

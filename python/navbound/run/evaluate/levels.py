@@ -16,7 +16,7 @@ from navbound.kpi.tables import with_larger_error
 from navbound.read.checks.places import header_against
 from navbound.read.checks.refusals import of_navigation, of_observations, rejections, require_most_epochs, skipped_words
 from navbound.read.checks.stated import ALERT, BESIDE_LEVEL, NO_LEVEL, UNREAD_ERROR
-from navbound.read.tables.columns import WITHOUT_LEVEL
+from navbound.read.columns.lacking import WITHOUT_LEVEL
 from navbound.read.tables.epochs import read
 from navbound.read.truth import Truth, with_error, with_truth
 from navbound.run.evaluate import sky
