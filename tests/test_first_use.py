@@ -64,6 +64,21 @@ def test_resets_of_a_position_are_no_other_place(tmp_path: Path) -> None:
     assert other_place("lat2") is not None
 
 
+@pytest.mark.parametrize("name", ["gps2_{}_reset", "{}_count", "count_{}", "delta_{}", "true_{}_reset_counter", "gps_delta_{}"])
+def test_a_name_of_a_count_or_a_step_hides_no_place(tmp_path: Path, name: str) -> None:
+    at = pl.int_range(60, eager=True)
+    other = {name.format("lat"): 48.5 + at * 5e-4, name.format("lon"): 11.0 + at * 3e-4}
+    assert _analyzed(tmp_path, _way(**other)).summary.verdict.id == "not_shown"
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "verdict"), [("ANP", 2000.0, "outside"), ("ANP (nm)", 1.0, "outside"), ("anp_nm", 0.01, "inside")]
+)
+def test_a_navigation_performance_that_is_stated_is_an_accuracy(tmp_path: Path, name: str, value: float, verdict: str) -> None:
+    run = _analyzed(tmp_path, _way(**{name: [value] * 60}), sigma_m=None)
+    assert run.summary.verdict.id == verdict
+
+
 @pytest.mark.parametrize("name", ["Altitude (Ellipsoid)", "Alt (HAE)", "height-above-ellipsoid", "altitude_ellipsoid", "alt_ellipsoid_m"])
 def test_a_height_above_the_ellipsoid_beside_an_altitude_is_the_height(tmp_path: Path, name: str) -> None:
     run = _analyzed(tmp_path, _way(**{"Altitude (ft)": [1000.0] * 60, name: [351.5] * 60}))

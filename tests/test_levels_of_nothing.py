@@ -27,6 +27,14 @@ def test_a_level_above_zero_is_one(tmp_path: Path) -> None:
     assert navbound.analyze(table(tmp_path / "a.csv", N, added={"hpl": np.full(N, 15.0)})).summary.verdict.id == "inside"
 
 
+def test_epochs_without_a_level_are_named_as_that(tmp_path: Path) -> None:
+    levels = np.where(np.arange(N) < 12, np.nan, 15.0)
+    verdict = navbound.analyze(table(tmp_path / "a.csv", N, added={"hpl": levels})).summary.verdict
+    assert (verdict.id, verdict.n_outside, verdict.n_degraded) == ("outside", 12, 0)
+    assert "12 epochs have no protection level, where others have one" in verdict.words
+    assert "degraded epochs" not in verdict.words
+
+
 def test_service_levels_have_the_same_rule(tmp_path: Path) -> None:
     path = tmp_path / "l.csv"
     rows = "".join(f"{1_600_000_000 + k},1.0,1.0,1.0,0,0\n" for k in range(60))

@@ -174,9 +174,19 @@ def claim(epochs: pl.DataFrame, sigma_m: float | None = None) -> Claimed:
             raise InputError("sigma_m", sigma_m, "m", "(0, inf)")
         return _typed(epochs, float(sigma_m))
     # What the table states is read from the table as it is: a covariance that is made of one statement takes the place of another.
+    stated, epochs = epochs, _without_others(epochs)
     least_m = _least_radii(epochs)
     claimed = _of_file(epochs, set(epochs.columns))
-    return replace(claimed, epochs=worse_than_covariance(_with_containment(claimed.epochs), least_m))
+    whole = worse_than_covariance(_with_containment(claimed.epochs), least_m)
+    return replace(claimed, epochs=whole.with_columns(stated[name] for name in _INDICATORS if name in stated.columns))
+
+
+def _without_others(epochs: pl.DataFrame) -> pl.DataFrame:
+    """Without the indicators of rows that are no position of the aircraft's own: what counts on says nothing of the rows after them."""
+    if "reason_id" not in epochs.columns:
+        return epochs
+    own = (pl.col("reason_id") != "reported").fill_null(value=True)
+    return epochs.with_columns(pl.when(own).then(pl.col(name)).alias(name) for name in _INDICATORS if name in epochs.columns)
 
 
 def _typed(epochs: pl.DataFrame, sigma_m: float) -> Claimed:
@@ -284,7 +294,7 @@ class Claims:
         # A status that only some pieces have says nothing here.
         joined = pl.concat([before, epochs], how="diagonal") if before.height else epochs
         claimed = claim(joined.select(epochs.columns), self._sigma_m)
-        last = joined.filter(pl.col("track") == joined["track"][-1])
+        last = _without_others(joined.filter(pl.col("track") == joined["track"][-1]))
         rows = [last.filter(pl.col(name).is_not_null()).tail(1) for name in _INDICATORS if name in last.columns]
         self._before = pl.concat([last.clear(), *rows]).unique("time_ns").sort("time_ns")
         if claimed.own_sigma_m is not None:

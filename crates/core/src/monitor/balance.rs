@@ -1,7 +1,7 @@
 //! Whether the way that speeds say is travelled at last: what holds, slow lags and spells without a speed take away from it is within every
 //! limit of its own.
 //!
-//! Over the straight minutes of a track that moves, its positions may lack five kilometres and a fiftieth of the way by its speeds. Where
+//! Over the minutes in which a track moves, its positions may lack five kilometres and a fiftieth of the way by its speeds. Where
 //! reports state no speed the way goes on from the last that did to the next, however far apart they are: no spell without a speed hides what
 //! is lost in it.
 
@@ -13,8 +13,8 @@ use crate::special::float::hypot;
 /// Provenance: ours \[m/s\].
 const FAST_MPS: f64 = 80.0;
 /// What is slower may stand: noise is a way of its own. Provenance: ours \[m/s\].
-const MOVING_MPS: f64 = 15.0;
-/// Share of a way that lies between its ends where it is straight. Provenance: ours \[1\].
+const MOVING_MPS: f64 = 5.0;
+/// Share of a way that lies between its ends where it is straight: elsewhere legs would cut the turns. Provenance: ours \[1\].
 const STRAIGHT: f64 = 0.98;
 /// What the way of the positions of a track may lack in all. Provenance: ours \[m\].
 const LACK_M: f64 = 5000.0;
@@ -107,16 +107,18 @@ impl Window {
         (self.spoken, self.longest_ns) = (at, 0);
     }
 
-    /// Ways of the positions and by the speeds, where the window is one to judge: of what moves, and straight \[m\].
+    /// Ways of the positions and by the speeds, where the window is one to judge: of what moves \[m\].
     fn ways_m(&self) -> Option<[f64; 2]> {
         let [steps_m, legs_m] = self.moved_m;
         let [even_m, least_m] = self.reported_m;
         let length_s = self.last.time_ns.saturating_sub(self.begin.time_ns) as f64 * 1e-9;
         let fast = even_m >= FAST_MPS * length_s;
-        let way_m = if fast { steps_m.min(legs_m + self.leg.apart_m(&self.last)) } else { steps_m };
+        let by_legs_m = steps_m.min(legs_m + self.leg.apart_m(&self.last));
+        let straight = self.begin.apart_m(&self.last) >= STRAIGHT * by_legs_m;
+        let way_m = if fast && straight { by_legs_m } else { steps_m };
         // What the aircraft may have flown is no lack, and makes none good.
         let by_speed_m = if way_m < even_m { way_m.max(least_m) } else { even_m };
-        let judged = by_speed_m >= MOVING_MPS * length_s && self.begin.apart_m(&self.last) >= STRAIGHT * way_m;
+        let judged = by_speed_m >= MOVING_MPS * length_s;
         judged.then_some([way_m, by_speed_m])
     }
 }
@@ -250,7 +252,30 @@ mod tests {
                 balance.see(At { time_ns: i64::from(k * step_s) * 1_000_000_000, lat_rad, lon_rad, speed_mps });
             }
             let [way_m, by_speed_m] = balance.ways_m;
-            assert!(by_speed_m - way_m < 0.005 * by_speed_m + 1.0, "{speed_mps} {step_s}: {way_m} {by_speed_m}");
+            // Steps that turn by less than `WHOLE_RAD` to either side are taken for straight.
+            assert!(by_speed_m - way_m < 0.01 * by_speed_m + 1.0, "{speed_mps} {step_s}: {way_m} {by_speed_m}");
+        }
+    }
+
+    /// At 0.7 of the reported speed, in turns of 1 degree a second to either side, a minute each, and in circles at 60 degrees of bank.
+    #[test]
+    fn turns_hide_no_lack_and_make_none() {
+        for (share, speed_mps, rate_radps, seconds) in [(0.7, 100.0, 0.0175, 60), (1.0, 100.0, 0.17, 3600), (1.0, 80.0, 0.21, 3600)] {
+            let (mut balance, [mut east_m, mut north_m, mut course_rad]) = (Balance::default(), [0.0_f64; 3]);
+            for k in 0..3600 {
+                let (lat_rad, lon_rad) = (0.8 + north_m / 6.368e6, 0.1 + east_m / (6.368e6 * 0.8_f64.cos()));
+                balance.see(At { time_ns: i64::from(k) * 1_000_000_000, lat_rad, lon_rad, speed_mps });
+                // A tenth of a second at a time: an arc.
+                for _ in 0..10 {
+                    course_rad += 0.1 * rate_radps * if (k / seconds) % 2 == 0 { 1.0 } else { -1.0 };
+                    (east_m, north_m) =
+                        (east_m + 0.1 * share * speed_mps * course_rad.sin(), north_m + 0.1 * share * speed_mps * course_rad.cos());
+                }
+            }
+            let [way_m, by_speed_m] = balance.ways_m;
+            let lack = (by_speed_m - way_m) / by_speed_m;
+            assert!((lack - (1.0 - share)).abs() < 0.005, "{share} {speed_mps}: {lack}");
+            assert_eq!(balance.behind_m().is_some(), share < 1.0);
         }
     }
 

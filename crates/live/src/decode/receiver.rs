@@ -5,7 +5,7 @@ use crate::codec::{Damaged, Reader, Writer};
 use crate::counters::Refused;
 use crate::position::{Position, Shown, TrackId};
 use navbound_core::quantity::{Reason, Status};
-use navbound_formats::receiver::position::{Dated, Decoder, Ends, Item, Kind, Message, OfDay, Reason as Absence, State};
+use navbound_formats::receiver::position::{Dated, Decoder, Ends, Item, Kind, Message, OfDay, State};
 
 /// Most messages of an unfinished epoch: one of a kind, and four of each that talkers share. Provenance: ours.
 const MOST_MESSAGES: u32 = 16;
@@ -18,8 +18,7 @@ pub(super) fn decoded(item: Item, track: TrackId) -> Option<Decoded> {
         Item::Malformed(_) => Some(Err(Refused::ShortMessage)),
         Item::Position(position) => {
             let Some(time) = position.time else { return Some(Err(Refused::Undated)) };
-            // What a count of satellites says of a position is decided where every position is judged, whatever its format.
-            let usable = position.absent.as_ref().is_none_or(|absent| absent.reason == Absence::FewSatellites);
+            let usable = position.absent.is_none();
             Some(Ok(Position {
                 lat_rad: position.lat_rad,
                 lon_rad: position.lon_rad,

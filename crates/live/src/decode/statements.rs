@@ -69,7 +69,8 @@ impl Places {
         let parts = parts(key);
         let any = |words: &BTreeSet<String>| parts.iter().any(|part| words.contains(part.trim_end_matches(|c: char| c.is_ascii_digit())));
         let is_latitude = any(&self.latitude);
-        if !is_latitude && !any(&self.longitude) {
+        // A number that is named of both coordinates is neither of them.
+        if is_latitude == any(&self.longitude) {
             return false;
         }
         let number = value.as_f64().or_else(|| value.as_str().and_then(angle));

@@ -72,7 +72,7 @@ _DIGITS, _GGA = frozenset("0123456789"), frozenset(map(str, _core.GGA_QUALITIES)
 _NO = _words(
     "0 -1 false f no n none v void invalid not_valid bad unusable fail failed lost off unhealthy unavailable not_available unreliable"
 )
-_YES = _words("1 true t yes y a valid ok good healthy on active available usable reliable")
+_YES = _words("1 true t yes y a valid ok good healthy on active available usable reliable sps dgps pps")
 _NO_FIX = _words("0 -1 false no none no_fix nofix invalid not_valid lost v void n time time_only dr dead_reckoning estimated")
 _FIX = _words(
     "2 3 4 5 6 9 true yes fix valid 2d 3d 2d_fix 3d_fix gps gnss dgps dgnss rtk rtk_fixed rtk_float fixed float sps pps ppp sbas single "
@@ -292,8 +292,8 @@ KINDS: tuple[Kind, ...] = (
     Kind(
         "alert",
         _words("gps_interference gnss_interference interference_level jamming_level"),
-        _words("high severe critical detected warning"),
-        _words("none no low ok"),
+        _words("high severe critical detected warning true yes"),
+        _words("none no low ok false"),
         numbers_unknown=True,
     ),
     # readsb: when GPS still worked well, shown for 15 minutes after it was lost or heavily degraded.
@@ -435,14 +435,16 @@ def _speaks_of_distance_from_truth(name: str) -> bool:
 
 
 _RECEIVERS = _words("true gps gnss raw irs ins fms adsb own est fix rtk ref")
-_LATITUDES = _words("lat latitude latitud breite") | {f"{whose}lat" for whose in _RECEIVERS}
-_LONGITUDES = _words("lon lng longitude longitud laenge länge") | {f"{whose}{lon}" for whose in _RECEIVERS for lon in ("lon", "lng")}
+_LATITUDES = _words("lat latitude latitud breite breitengrad") | {f"{whose}lat" for whose in _RECEIVERS}
+_LONGITUDES = _words("lon lng longitude longitud laenge länge laengengrad") | {
+    f"{whose}{lon}" for whose in _RECEIVERS for lon in ("lon", "lng")
+}
 _LATITUDE = _LATITUDES | _LONGITUDES
 _NO_VEHICLE = _NO_TRUTH | _words(
     "airport origin destination dest departure dep arrival arr home target goal next prev previous start end first last site sensor radar "
     "beacon antenna cpr centre center cell grid tile offset scale speed vel velocity rate err error sigma std var acc accuracy axis "
     "pred predicted forecast intruder traffic lead leader min max mean avg average median "
-    "reset resets counter count delta dot variance"
+    "dot variance"
 )
 """Parts of names of a latitude or a longitude, and of one that is none of the vehicle now. Provenance: ours."""
 _INERTIAL = _words("irs ins iru ir adiru adirs inertial dr dead reckoning deadreckoning")
@@ -450,9 +452,12 @@ _INERTIAL = _words("irs ins iru ir adiru adirs inertial dr dead reckoning deadre
 
 
 def _speaks_of_place(name: str) -> bool:
-    """Whether the name is one of another place of the vehicle: the truth of somebody else, a second receiver."""
+    """Whether the name is one of another place of the vehicle: the truth of somebody else, a second receiver.
+
+    A number that is named of both coordinates is neither of them: PX4 counts `lat_lon_reset_counter`, and `delta_lat_lon[0]` is a step.
+    """
     parts = {part.rstrip("0123456789") for part in name_parts(name)}
-    return not _LATITUDE.isdisjoint(parts) and parts.isdisjoint(_NO_VEHICLE)
+    return (_LATITUDES.isdisjoint(parts) != _LONGITUDES.isdisjoint(parts)) and parts.isdisjoint(_NO_VEHICLE)
 
 
 @dataclass(frozen=True)

@@ -103,14 +103,17 @@ def assign(
     states = {q: c for q, c in _of_layouts(names).items() if c.name not in taken and q not in absent}
     columns = states | columns
     taken |= {c.name for c in states.values()}
+    sides = _sides(n for n in names if n not in taken and n in texts)
     for quantity in quantities:
         if quantity.name not in columns and quantity.name not in absent:
-            assigned = _known(quantity, [n for n in names if n not in taken], path, own=own)
+            assigned = _known(quantity, [n for n in names if n not in taken and n not in sides.values()], path, own=own)
             if assigned is not None:
                 columns[quantity.name] = assigned
                 taken.add(assigned.name)
     if (altitude := _of_phone(columns.get("altitude_m"), names)) is not None:
         columns["altitude_m"] = altitude
+    columns |= {quantity: replace(columns[quantity], hemisphere=name) for quantity, name in sides.items() if quantity in columns}
+    taken |= {c.hemisphere for c in columns.values() if c.hemisphere}
     times = of_times(times, [n for n in names if n not in taken], of_day, path)
     taken |= {c.name for c in times}
     require(columns, times, names, path, needs)
@@ -169,6 +172,23 @@ def _speed_without_unit(free: list[str]) -> str:
     plain, (speed,) = by_form(free), (quantity for quantity in QUANTITIES if quantity.name == "ground_speed_mps")
     names = (alias for alias, unit in speed.aliases.items() if unit == WRITTEN)
     return next((plain[alias] for alias in names if alias in plain), "")
+
+
+_SIDE = r"(?:dir|direction|ref|hemi|hemisphere|indicator|ind|cardinal|sign|{0})"
+_HEMISPHERES = {
+    f"{kind}_{axis}_rad": re.compile(rf"{of}(?:{written})_?{_SIDE.format(sides)}|{of}{sides}(?:_?(?:ind|indicator|hemisphere|dir))?")
+    for axis, written, sides in (("lat", "lat|latitude", "n[_/]?s"), ("lon", "lon|lng|long|longitude", "e[_/]?w"))
+    for kind, of in (("est", "(?:gps|gnss)?_?"), ("truth", "truth_?"))
+}
+"""Names of columns of letters beside a coordinate. Provenance: ours, from headers of loggers and of EXIF."""
+
+
+def _sides(in_words: Iterable[str]) -> dict[str, str]:
+    """The columns of letters that say the hemisphere of a coordinate, by its quantity."""
+    short = [name for name in in_words if len(name) <= LONGEST_NAME]
+    forms = {re.sub(r"[\s\-.]+", "_", re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name.strip())).lower(): name for name in reversed(short)}
+    matching = {quantity: next(filter(pattern.fullmatch, forms), None) for quantity, pattern in _HEMISPHERES.items()}
+    return {quantity: forms[form] for quantity, form in matching.items() if form is not None}
 
 
 _OF_PHONE = re.compile(r"(?:horizontal|vertical|speed|bearing|course|altitude)_accuracy(?:_.*)?")

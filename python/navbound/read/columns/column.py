@@ -29,6 +29,8 @@ class Column:
     """Whether the file or the caller says the unit; otherwise it is the usual one of the name."""
     order: str = ""
     """Of a date of numbers, as the caller states it."""
+    hemisphere: str = ""
+    """Of a coordinate without a sign, the column whose letters say on which side of the equator or of Greenwich it is."""
     because: str = ""
     """Why it is read in this unit, where names beside it say so; the rest of a sentence."""
 

@@ -77,6 +77,26 @@ def numbers(column: pl.Series, what: Column) -> tuple[pl.Series, pl.Series]:
     return frame["value"], frame["reason"]
 
 
+_SIDES = {"lat": (["S", "SOUTH"], ["N", "NORTH"]), "lon": (["W", "WEST"], ["E", "EAST"])}
+"""Words of a hemisphere below zero, and above it, by the axis."""
+
+
+def in_hemisphere(what: Column, values: pl.Series, reason: pl.Series, letters: pl.Series) -> tuple[pl.Series, pl.Series]:
+    """Coordinates with the sign of their hemisphere, and why they are none: one without a hemisphere may be on either side.
+
+    Programs write what is south or west with a minus or without one; with a minus nothing is north or east.
+    """
+    letter = letters.cast(pl.String).str.strip_chars().str.to_uppercase()
+    below, above = (letter.is_in(words).fill_null(value=False) for words in _SIDES["lat" if "_lat_" in what.quantity else "lon"])
+    contradicts = above & (values < 0.0).fill_null(value=False)
+    known = pl.when(below).then(-values.abs()).when(above & ~contradicts).then(values)
+    why = (
+        pl.when(reason.is_not_null()).then(reason).when(contradicts).then(pl.lit(f"below zero, and “{letters.name}” says otherwise"))
+        .when(~(below | above)).then(pl.lit(f"“{letters.name}” says no hemisphere"))
+    )  # fmt: skip
+    return pl.select(known.alias("value")).to_series(), pl.select(why.alias("reason")).to_series()
+
+
 def floats(column: pl.Series) -> NDArray[np.float64]:
     """The numbers of a column as they are written; NaN where there is none."""
     if column.dtype == pl.String:

@@ -23,7 +23,17 @@ from navbound.read.columns.column import POSITION, Assignment, Column, is_transp
 from navbound.read.columns.naming import declare
 from navbound.read.columns.timed import position_time
 from navbound.read.quantities import POSITION_TIME, QUANTITY, UNITS
-from navbound.read.tables.cells import MISSING, largest, no_field, numbers, on_ground, smallest, within_objects, words_of_ground
+from navbound.read.tables.cells import (
+    MISSING,
+    in_hemisphere,
+    largest,
+    no_field,
+    numbers,
+    on_ground,
+    smallest,
+    within_objects,
+    words_of_ground,
+)
 from navbound.read.tables.names import Callsigns, one_writing
 from navbound.read.tables.stated_units import is_row_of_units, require_same
 from navbound.read.tables.table import LINE
@@ -174,7 +184,8 @@ class Values:
         raw = frame[column.name]
         if column.quantity == "ground_speed_mps":
             raw = self._no_speeds.without(column.name, frame, raw, UNITS["mps"][column.unit], (self.tally, SPEEDS))
-        return numbers(raw, column)
+        values, reason = numbers(raw, column)
+        return in_hemisphere(column, values, reason, frame[column.hemisphere]) if column.hemisphere else (values, reason)
 
     def _with_speed(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
         """The numbers of a speed whose unit nobody states."""

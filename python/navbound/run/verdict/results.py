@@ -114,16 +114,26 @@ def _first(verdict: Verdict, risks: tuple[float, float]) -> str:
         false = refuted_words(verdict.belief) if verdict.belief is not None and (not n or verdict.belief.state == "refuted") else ""
         why = "; ".join(each for each in (beyond, false) if each) or refuted_words(verdict.belief)
         return f"{HEADLINES[verdict.id]}, margins to {verdict.requirement} mean nothing: {why}; {shares}."
-    # Where every judged epoch is within, those that are outside are degraded: the worst margin beside them is of the judged ones.
-    all_within = verdict.share_inside == verdict.share_contained == 1.0
-    whose = ("degraded {}", "") if all_within else ("{}", " with status ok or degraded")
-    one, many = (f"{whose[0].format(each)}{whose[1]} {has}" for each, has in (("epoch", "has"), ("epochs", "have")))
-    more = f", and {counted(verdict.n_outside, one, many)} a bound beyond its limit" if verdict.n_outside else ""
+    more = f", and {_outside(verdict)}" if verdict.n_outside else ""
     return (
         f"{HEADLINES[verdict.id]} {verdict.requirement}: the {accuracy} bound is within RNP at {share(verdict.share_inside)} of "
         f"{counted(verdict.n_judged, 'judged epoch')}, the {integrity} bound within twice RNP at {share(verdict.share_contained)}{more}; "
         f"{shares}{covered_words(verdict.belief)}{_thin(verdict)}."
     )
+
+
+def _outside(verdict: Verdict) -> str:
+    """The epochs that are outside, by whatever comparison."""
+    n = verdict.n_outside
+    # Where every judged epoch is within, those that are outside are others: the worst margin beside them is of the judged ones.
+    if verdict.share_inside == verdict.share_contained == 1.0:
+        if not verdict.n_degraded:
+            return f"{counted(n, 'epoch has', 'epochs have')} no protection level, where others have one"
+        if n > verdict.n_degraded:
+            one, many = ("epoch that is degraded or has no protection level is", "epochs that are degraded or have no protection level are")
+            return f"{counted(n, one, many)} outside"
+        return f"{counted(n, 'degraded epoch has', 'degraded epochs have')} a bound beyond its limit"
+    return f"{counted(n, 'epoch with status ok or degraded has', 'epochs with status ok or degraded have')} a bound beyond its limit"
 
 
 MANY_ABSENT = 0.01

@@ -100,7 +100,7 @@ pub enum Reason {
     NoFix,
     /// Another statement of the same epoch says that there is no such position.
     Contradicted,
-    /// The message of the position itself counts fewer satellites than determine one. Such a position is kept, as one that is trusted less.
+    /// The message of the position itself counts fewer satellites than determine one. A log keeps such a position, as one that is trusted less.
     FewSatellites,
     /// The satellites hardly determine the position, by its own dilution.
     Dilution,

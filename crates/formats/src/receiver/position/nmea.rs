@@ -1,6 +1,6 @@
-//! NMEA 0183: GGA with GST (or GBS) and the speed of RMC of the same time of day, dated by RMC or ZDA.
+//! NMEA 0183: GGA with GST (or GBS) and the speed of RMC or VTG of the same time of day, dated by RMC or ZDA.
 //!
-//! What RMC, GLL, GNS, GSA and GBS of the same epoch say against the position of GGA takes it away. Of several accuracies the worst counts.
+//! What RMC, GLL, GNS, GSA, GBS and DTM of the same epoch say against the position of GGA takes it away. Of several accuracies the worst counts.
 //!
 //! Source: NMEA 0183 version 4 as receivers' manuals give it; standard. GGA has no date, and its height stands above the geoid.
 
@@ -19,6 +19,7 @@ const UNSET_S: f64 = 600.0;
 /// Minutes of a time of day count 61 seconds.
 const MINUTE_NS: i64 = 61 * SECOND_NS;
 
+const DTM: u32 = name(*b"DTM");
 const GGA: u32 = name(*b"GGA");
 const GST: u32 = name(*b"GST");
 const GBS: u32 = name(*b"GBS");
@@ -28,6 +29,7 @@ const GSA: u32 = name(*b"GSA");
 /// Position of u-blox's own sentence, `PUBX,00`.
 const PUBX: u32 = name(*b"UBX");
 const RMC: u32 = name(*b"RMC");
+const VTG: u32 = name(*b"VTG");
 const ZDA: u32 = name(*b"ZDA");
 
 const FIELDS: Fields =
@@ -39,6 +41,14 @@ const FIELDS_AND_SPEED: Fields = &[
     ("time", "GGA, dated by RMC or ZDA:utc"),
     ("ground_speed_mps", "RMC"),
     ("ground_track_rad", "RMC"),
+];
+const FIELDS_AND_VTG: Fields = &[
+    ("est_lat_rad", "GGA"),
+    ("est_lon_rad", "GGA"),
+    ("est_h_m", "GGA altitude + separation"),
+    ("time", "GGA, dated by RMC or ZDA:utc"),
+    ("ground_speed_mps", "VTG"),
+    ("ground_track_rad", "VTG"),
 ];
 
 const fn name([a, b, c]: [u8; 3]) -> u32 {
@@ -65,9 +75,21 @@ pub(super) fn step(body: &[u8], record: u64) -> Step {
         return key.map_or(Step::Passed, |OfDay(key)| Step::Date { key, kind: PUBX, dated: None, kept: true });
     }
     let address = fields.get(0).and_then(|address| address.get(2..)).and_then(|address| <[u8; 3]>::try_from(address).ok());
-    let Some(kind) = address.map(name).filter(|kind| [GGA, GST, GBS, GLL, GNS, GSA, RMC, ZDA].contains(kind)) else { return Step::Passed };
+    let Some(kind) = address.map(name).filter(|kind| [DTM, GGA, GST, GBS, GLL, GNS, GSA, RMC, VTG, ZDA].contains(kind)) else {
+        return Step::Passed;
+    };
     if kind == GSA {
         return if fields.number(2).is_some() { Step::Beside { kind, number: dimensions } } else { Step::Passed };
+    }
+    if kind == DTM {
+        return Step::Beside { kind, number: |dtm| datum_offset_m(&Sentence(dtm)).unwrap_or(0.0) };
+    }
+    if kind == VTG {
+        return if vtg_speed_mps(&fields).is_some() {
+            Step::Beside { kind, number: |vtg| vtg_speed_mps(&Sentence(vtg)).unwrap_or(0.0) }
+        } else {
+            Step::Passed
+        };
     }
     // A receiver without a fix leaves its fields empty.
     let Some(OfDay(key)) = fields.get(if kind == GLL { 5 } else { 1 }).and_then(of_day) else {
@@ -96,6 +118,30 @@ fn dimensions(gsa: &[u8]) -> f64 {
     Sentence(gsa).number(2).unwrap_or(0.0)
 }
 
+/// Speed of a VTG sentence, whose mode says that it was measured where it has one.
+fn vtg_speed_mps(vtg: &Sentence<'_>) -> Option<f64> {
+    let measured = vtg.get(9).is_none_or(|mode| mode.iter().all(|letter| NMEA_MODES.contains(letter)));
+    let speed = || vtg.number(5).map(|knots| knots * KNOT_MPS).or_else(|| vtg.number(7).map(|kmh| kmh / 3.6));
+    speed().filter(|speed_mps| measured && *speed_mps >= 0.0)
+}
+
+/// How far the datum of a DTM sentence lies from WGS-84, where it says so.
+fn datum_offset_m(dtm: &Sentence<'_>) -> Option<f64> {
+    let [north, east] = [3, 5].map(|at| dtm.number(at).map(|minutes| minutes / 60.0));
+    Some(EARTH_M * libm::hypot(north?, east?).to_radians())
+}
+
+/// What a DTM sentence says against a position: that it is one in another datum.
+fn other_datum(dtm: &Sentence<'_>) -> Option<String> {
+    let name = dtm.get(1).filter(|name| !name.is_empty())?;
+    let offset_m = datum_offset_m(dtm);
+    let far = offset_m.map_or(!NEAR_DATUMS.contains(&name), |offset_m| offset_m > ONE_PLACE_M);
+    far.then(|| format!("DTM datum {}{}", String::from_utf8_lossy(name), offset_m.map_or_else(String::new, |m| format!(", {m:.0} m away"))))
+}
+
+/// Datums within some metres of WGS-84: itself, WGS-72, PZ-90. Provenance: standard (codes of NMEA 0183, as receivers' manuals give them).
+const NEAR_DATUMS: [&[u8]; 4] = [b"W84", b"W72", b"S85", b"P90"];
+
 /// Quality, satellites, HDOP, altitude, separation; latitude and longitude.
 const GGA_NUMBERS: [usize; 7] = [2, 4, 6, 7, 8, 9, 11];
 
@@ -119,8 +165,10 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
     let enlarged = of_gst.map(|own| no_better(own, expected));
     let biased = || all(GBS).find_map(|gbs| biased_range(&gbs));
     let against = contradiction(&gga, &sentence).or_else(biased);
-    let speed_mps = sentence(RMC).and_then(|rmc| rmc.number(7)).filter(|knots| *knots >= 0.0).map(|knots| knots * KNOT_MPS);
-    let track_rad = sentence(RMC).and_then(|rmc| rmc.number(8)).filter(|degrees| (0.0..=360.0).contains(degrees)).map(f64::to_radians);
+    let of_rmc = sentence(RMC).and_then(|rmc| rmc.number(7)).filter(|knots| *knots >= 0.0).map(|knots| knots * KNOT_MPS);
+    let speed_mps = of_rmc.or_else(|| sentence(VTG).and_then(|vtg| vtg_speed_mps(&vtg)));
+    let course = sentence(RMC).and_then(|rmc| rmc.number(8)).or_else(|| sentence(VTG).and_then(|vtg| vtg.number(1)));
+    let track_rad = course.filter(|degrees| (0.0..=360.0).contains(degrees)).map(f64::to_radians);
     let usable = measured && lat_rad.is_some() && lon_rad.is_some();
     let absent = |reason: Reason| move |stated: String| Absent { reason, stated };
     let few = || gga.number(7).filter(|count| *count < f64::from(LEAST_SATELLITES)).map(|count| format!("{count} satellites"));
@@ -143,7 +191,11 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
         } else {
             Some(absent(Reason::NoFix)(gga.stated()))
         },
-        fields: if speed_mps.is_some() { FIELDS_AND_SPEED } else { FIELDS },
+        fields: match (speed_mps, of_rmc) {
+            (None, _) => FIELDS,
+            (_, Some(_)) => FIELDS_AND_SPEED,
+            _ => FIELDS_AND_VTG,
+        },
         covariance_from: of_gst.map(|_| "GST").or(of_gbs.map(|_| "GBS")).or(of_pubx.map(|_| "PUBX,00 hAcc, vAcc")),
         notes: [(altitude.is_some() && separation.is_none()).then_some(Note::NoSeparation), worse.or(substitute)],
         ..Position::default()
@@ -182,7 +234,8 @@ fn contradiction<'a>(gga: &Sentence<'a>, sentence: &impl Fn(u32) -> Option<Sente
     let flat = || sentence(GSA).map(|gsa| dimensions(gsa.0)).filter(|dimensions| *dimensions < GSA_DIMENSIONS);
     let wide = || sentence(GSA).and_then(|gsa| gsa.number(16)).filter(|dilution| *dilution > DILUTION);
     let own_word = || sentence(PUBX).and_then(|pubx| pubx.get(8)).filter(|fix| NO_FIX.contains(fix)).map(String::from_utf8_lossy);
-    let further = stated.or_else(|| flat().map(|fix| format!("GSA fix {fix}")));
+    let further = stated.or_else(|| sentence(DTM).and_then(|dtm| other_datum(&dtm)));
+    let further = further.or_else(|| flat().map(|fix| format!("GSA fix {fix}")));
     further.or_else(|| wide().map(|hdop| format!("GSA HDOP {hdop}"))).or_else(|| own_word().map(|fix| format!("PUBX fix {fix}")))
 }
 

@@ -216,10 +216,13 @@ fn what_another_sentence_says_against_a_position_takes_it_away() {
         (pubx("NF", "4900.0000"), "PUBX fix NF"),
         (pubx("DR", "4900.0000"), "PUBX fix DR"),
         (pubx("G3", "4901.0000"), "position of PUBX 1854 m away"),
+        // 0.4 and 0.2 minutes of arc.
+        ("GPDTM,TOY,,0.4,N,0.2,W,0.0,W84".to_owned(), "DTM datum TOY, 829 m away"),
+        ("GPDTM,NAD,,,,,,,W84".to_owned(), "DTM datum NAD"),
     ] {
         // Before the position, behind it, and behind its accuracy.
         for order in [[ZDA, &other, GGA, GST], [ZDA, GGA, &other, GST], [ZDA, GGA, GST, &other]] {
-            if order[1].contains("GSA") {
+            if order[1].contains("GSA") || order[1].contains("DTM") {
                 continue; // It has no time: before the first sentence of an epoch it is of the one before.
             }
             assert_eq!(reasons(&order), [("contradicted", says.to_owned())], "{order:?}");
@@ -235,6 +238,9 @@ fn what_another_sentence_says_against_a_position_takes_it_away() {
         gll("A", "A"),
         gsa("GN", 3),
         pubx("D3", "4900.0000"),
+        "GPDTM,W84,,0.0,N,0.0,E,0.0,W84".to_owned(),
+        "GPDTM,999,,0.001,N,0.0,E,0.0,W84".to_owned(),
+        "GPDTM,P90,,,,,,,W84".to_owned(),
         // Satellites of the same maker, which are no position.
         "PUBX,03,11,23,-,,,45,010".to_owned(),
     ] {
@@ -254,6 +260,37 @@ fn what_another_sentence_says_against_a_position_takes_it_away() {
     // What another sentence says counts before it.
     let both = reasons(&[ZDA, &GGA.replace(",08,", ",00,"), GST, &rmc("V", "N", "4900.0000")]);
     assert_eq!(both, [("contradicted", "RMC status V".to_owned())]);
+}
+
+#[test]
+fn a_speed_that_rmc_does_not_state_is_that_of_vtg() {
+    let rmc = |knots: &str, course: &str| format!("GPRMC,120000.00,A,4900.0000,N,00230.0000,E,{knots},{course},221126,,,A,V");
+    let vtg = |text: &str| format!("GPVTG,{text}");
+    let stated = |more: &[&str]| {
+        let mut bodies = vec![ZDA, GGA];
+        bodies.extend(more);
+        bodies.push(GST);
+        let log = read_sentences(&bodies);
+        let position = &log.positions[0];
+        (position.ground_speed_mps, position.ground_track_rad.map(f64::to_degrees), position.fields.last().map(|each| each.1))
+    };
+    let both = vtg("90.0,T,,M,100.0,N,185.2,K,A");
+    // 100 knots are 185200 m an hour.
+    let speed = 185_200.0 / 3600.0;
+    for (more, expected) in [
+        (vec![rmc("20.0", "10.0"), both.clone()], (Some(20.0 * 1852.0 / 3600.0), "RMC")),
+        (vec![rmc("", ""), both.clone()], (Some(speed), "VTG")),
+        (vec![both], (Some(speed), "VTG")),
+        (vec![vtg("90.0,T,,M,,N,185.2,K")], (Some(speed), "VTG")),
+        (vec![vtg("90.0,T,,M,100.0,N,185.2,K,N")], (None, "GGA, dated by RMC or ZDA:utc")),
+        (vec![vtg(",T,,M,,N,,K,N")], (None, "GGA, dated by RMC or ZDA:utc")),
+    ] {
+        let (speed_mps, course, from) = stated(&more.iter().map(String::as_str).collect::<Vec<_>>());
+        assert_eq!(from, Some(expected.1), "{more:?}");
+        assert_eq!(speed_mps.is_some(), expected.0.is_some(), "{more:?}");
+        assert!(speed_mps.zip(expected.0).is_none_or(|(mine, other)| (mine - other).abs() < 1e-9), "{more:?}");
+        assert!(expected.1 != "VTG" || course.is_some_and(|course| (course - 90.0).abs() < 1e-9), "{more:?}");
+    }
 }
 
 #[test]
