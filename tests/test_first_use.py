@@ -72,11 +72,16 @@ def test_a_name_of_a_count_or_a_step_hides_no_place(tmp_path: Path, name: str) -
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "verdict"), [("ANP", 2000.0, "outside"), ("ANP (nm)", 1.0, "outside"), ("anp_nm", 0.01, "inside")]
+    ("name", "value", "verdict"), [("ANP (nm)", 1.0, "outside"), ("ANP [m]", 2000.0, "outside"), ("anp_nm", 0.01, "inside")]
 )
 def test_a_navigation_performance_that_is_stated_is_an_accuracy(tmp_path: Path, name: str, value: float, verdict: str) -> None:
     run = _analyzed(tmp_path, _way(**{name: [value] * 60}), sigma_m=None)
     assert run.summary.verdict.id == verdict
+
+
+def test_a_navigation_performance_without_a_unit_is_named_and_compared_in_metres(tmp_path: Path) -> None:
+    verdict = _analyzed(tmp_path, _way(ANP=[2000.0] * 60)).summary.verdict
+    assert (verdict.id, verdict.unread, verdict.n_stated_worse) == ("not_shown", ["ANP"], 60)
 
 
 @pytest.mark.parametrize("name", ["Altitude (Ellipsoid)", "Alt (HAE)", "height-above-ellipsoid", "altitude_ellipsoid", "alt_ellipsoid_m"])

@@ -136,11 +136,12 @@ def test_a_list_of_the_details_counts_until_another_source_is_stated(tmp_path: P
     of_mlat = ["mlat", "mlat", None, "mlat"]
     sources = [*of_mlat, "adsb_icao", "adsb_icao", "mlat", "adsb_icao"]
     epochs = navbound.analyze(trace(tmp_path, sources, [{"nac_p": 10} | computed, *[None] * 5, {"nac_p": 10} | own, None])).epochs
-    assert epochs["reason_id"].to_list() == ["reported"] * 4 + [None, None, "reported", None]
+    # An accuracy that came beside a position of others is none of the rows after it.
+    assert epochs["reason_id"].to_list() == ["reported"] * 4 + ["no_covariance"] * 2 + ["reported", "no_covariance"]
     # Where the source of the row is another than its list says, the list counts for the rows of that source.
     contradicting = {"nac_p": 10, "type": "adsb_icao", "mlat": ["lat"]}
     one = navbound.analyze(trace(tmp_path, ["adsb_icao"] * N, [{"nac_p": 10, "type": "mlat"}, *[None] * (N - 1)])).epochs
-    assert one["reason_id"].to_list() == ["reported", *[None] * (N - 1)]
+    assert one["reason_id"].to_list() == ["reported", *["no_covariance"] * (N - 1)]
     assert reported(trace(tmp_path, ["adsb_icao"] * N, [contradicting, *[None] * (N - 1)]))
 
 

@@ -134,7 +134,7 @@ def test_a_distance_off_the_track_is_an_error(tmp_path: Path, name: str, value: 
     assert (verdict.id, verdict.n_stated_beyond) == ("not_shown", N)
 
 
-@pytest.mark.parametrize("name", ["residual", "misfit_m", "ANP", "pos_dev", "unc", "ci95"])
+@pytest.mark.parametrize("name", ["residual", "misfit_m", "pos_dev", "unc", "ci95"])
 def test_a_name_that_may_be_an_error_is_named_and_not_compared(tmp_path: Path, name: str) -> None:
     verdict = navbound.analyze(table(tmp_path / "a.csv", N, sigma_m=SIGMA_M, added={name: np.full(N, 3000.0)})).summary.verdict
     assert (verdict.id, verdict.unread) == ("inside", [name])
