@@ -57,6 +57,18 @@ def test_a_row_without_a_hemisphere_has_no_position(tmp_path: Path, odd: str) ->
     assert run.summary.verdict.n_missing == 1
 
 
+@pytest.mark.parametrize("piece_rows", [None, 20])
+@pytest.mark.parametrize("names", [("N/S", "E/W"), ("lat_dir", "lon_dir")])
+def test_letters_that_come_with_the_first_fix_count_too(tmp_path: Path, names: tuple[str, str], piece_rows: int | None) -> None:
+    path = logged(tmp_path / "a.csv", ("S", "W"), names)
+    head, *rows = path.read_text().splitlines()
+    without = [f"{row.split(',')[0]},,,," for row in rows[:25]]
+    path.write_text("\n".join([head, *without, *rows[25:]]) + "\n")
+    run = navbound.analyze(path, spec="RNP 0.3", sigma_m=5.0, piece_rows=piece_rows)
+    assert (run.summary.verdict.n_judged, run.summary.verdict.n_missing) == (35, 25)
+    assert (run.epochs["est_lat_rad"] < 0.0).all()
+
+
 @pytest.mark.parametrize("piece_rows", [None, 7])
 def test_an_accuracy_beside_a_position_of_others_is_none_of_the_rows_after_it(tmp_path: Path, piece_rows: int | None) -> None:
     rows = [f"{1_700_000_000 + k},3c6444,{48 + k * 1e-4:.5f},2.5,{'tisb_icao,9' if k % 60 == 0 else ','}" for k in range(900)]

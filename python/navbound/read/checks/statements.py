@@ -15,6 +15,7 @@ import polars as pl
 
 from navbound import _core
 from navbound.read import own_positions
+from navbound.read.columns.naming import apart_at_capitals
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -396,7 +397,7 @@ _NO_POSITION = _words(
 
 def name_parts(name: str) -> list[str]:
     """Parts of a name, in small letters: at what is neither letter nor digit, and before a capital."""
-    return re.split(r"[^a-z0-9]+", re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name[:_LONGEST]).lower())
+    return re.split(r"[^a-z0-9]+", apart_at_capitals(name[:_LONGEST]).lower())
 
 
 def _parts_of_lengths(name: str) -> set[str]:

@@ -50,6 +50,7 @@ def assign(
     *,
     needs: Sequence[str] = POSITION,
     texts: Container[str] = (),
+    blank: Container[str] = (),
     of_day: Container[str] = (),
     where_present: Mapping[str, str] | None = None,
 ) -> Assignment:
@@ -68,6 +69,8 @@ def assign(
         Quantities without which the file is refused, beside a time; other than a position they are those of errors and protection levels.
     texts : container of str
         Columns that hold words and no number: one named `track` is then a flight's name, not its direction.
+    blank : container of str
+        Columns of text in which nothing is written at first.
     of_day : container of str
         Columns that hold times of day without a date: they are times together with a column of dates alone.
     where_present : mapping, optional
@@ -103,7 +106,7 @@ def assign(
     states = {q: c for q, c in _of_layouts(names).items() if c.name not in taken and q not in absent}
     columns = states | columns
     taken |= {c.name for c in states.values()}
-    sides = _sides(n for n in names if n not in taken and n in texts)
+    sides = _sides([n for n in names if n not in taken and n in texts], [n for n in names if n not in taken and n in blank])
     for quantity in quantities:
         if quantity.name not in columns and quantity.name not in absent:
             assigned = _known(quantity, [n for n in names if n not in taken and n not in sides.values()], path, own=own)
@@ -183,10 +186,11 @@ _HEMISPHERES = {
 """Names of columns of letters beside a coordinate. Provenance: ours, from headers of loggers and of EXIF."""
 
 
-def _sides(in_words: Iterable[str]) -> dict[str, str]:
-    """The columns of letters that say the hemisphere of a coordinate, by its quantity."""
-    short = [name for name in in_words if len(name) <= LONGEST_NAME]
-    forms = {re.sub(r"[\s\-.]+", "_", re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name.strip())).lower(): name for name in reversed(short)}
+def _sides(in_words: Iterable[str], blank: Iterable[str]) -> dict[str, str]:
+    """The columns of letters that say the hemisphere of a coordinate, by its quantity; what is blank at first may hold them later."""
+    # `NS` may be a number of satellites.
+    later = [name for name in blank if plain_form(name)[0] != "ns"]
+    forms = by_form([name for name in (*in_words, *later) if len(name) <= LONGEST_NAME])
     matching = {quantity: next(filter(pattern.fullmatch, forms), None) for quantity, pattern in _HEMISPHERES.items()}
     return {quantity: forms[form] for quantity, form in matching.items() if form is not None}
 

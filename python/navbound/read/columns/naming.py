@@ -17,6 +17,10 @@ LONGEST_NAME = 80
 _ALL_UNITS = frozenset(unit for units in UNITS.values() for unit in units if unit not in {"", "1"})
 
 
+_NORTH_OR_SOUTH = "n/s"
+"""A name that is no quantity in seconds."""
+
+
 @functools.lru_cache(maxsize=1024)
 def plain_form(name: str) -> tuple[str, str | None]:
     """``Latitude (deg)`` and ``Latitude / deg`` to ``latitude`` and ``deg``; of a name that stands twice both columns are it."""
@@ -28,7 +32,7 @@ def plain_form(name: str) -> tuple[str, str | None]:
         opened = [at for bracket in "([" if (at := inside.find(bracket, last_closed + 1)) >= 0]
         if opened:
             stem, unit = inside[: min(opened)], inside[min(opened) + 1 :].strip().lower()
-    elif (slash := stem.rfind("/")) > 0 and stem[slash + 1 :].strip().lower() in _ALL_UNITS:
+    elif stem.lower() != _NORTH_OR_SOUTH and (slash := stem.rfind("/")) > 0 and stem[slash + 1 :].strip().lower() in _ALL_UNITS:
         stem, unit = stem[:slash], stem[slash + 1 :].strip().lower()
     plain = re.sub(r"[\s\-.]+", "_", stem.strip().lower())
     if unit in _ABOVE_ELLIPSOID and plain in _HEIGHTS:
@@ -41,9 +45,14 @@ _ABOVE_ELLIPSOID = frozenset(("wgs84", "wgs-84", "wgs 84", "ellipsoid", "ellipso
 _HEIGHTS = frozenset(("altitude", "alt", "height", "h"))
 
 
+def apart_at_capitals(name: str) -> str:
+    """``latDeg`` to ``lat_Deg``."""
+    return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name)
+
+
 def parted_form(name: str) -> str:
     """``latDeg`` to ``lat_deg``."""
-    return plain_form(re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name))[0] if len(name) <= LONGEST_NAME else plain_form(name)[0]
+    return plain_form(apart_at_capitals(name))[0] if len(name) <= LONGEST_NAME else plain_form(name)[0]
 
 
 def by_form(names: list[str]) -> dict[str, str]:

@@ -180,8 +180,9 @@ class _FirstPass:
         if self.beside is not None:
             # A file of the truth may call its positions so.
             columns, where_present = truth_as_position(names) | dict(columns or {}), dict(self.beside.columns)
+        in_words, blank = texts(frame)
         self.mapping: Assignment = assign(
-            names, columns, self.path, texts=texts(frame), of_day=of_day(frame.head(SHOWN)), where_present=where_present
+            names, columns, self.path, texts=in_words, blank=blank, of_day=of_day(frame.head(SHOWN)), where_present=where_present
         )
         self.values = Values(self.path, self.source.stem, self.mapping, list(POSITION))
 

@@ -128,12 +128,14 @@ def _read(
     if beside:
         # A file of the truth may call its positions so.
         columns = truth_as_position(content.columns) | dict(columns or {})
+    in_words, blank = texts(content.frame)
     mapping = assign(
         content.columns,
         columns,
         source.path,
         needs=needs,
-        texts=texts(content.frame),
+        texts=in_words,
+        blank=blank,
         of_day=of_day(content.frame.head(SHOWN)),
         where_present=where_present,
     )

@@ -66,12 +66,13 @@ SHOWN = 20
 """Rows that show whether a column holds words: as many as the shortest piece of a file has. Provenance: ours."""
 
 
-def texts(frame: pl.DataFrame) -> set[str]:
-    """Columns of text of which something is written in the first rows, and nothing there is a number."""
+def texts(frame: pl.DataFrame) -> tuple[set[str], set[str]]:
+    """Columns of text of which something is written in the first rows, and nothing there is a number; and those in which nothing is."""
     head = frame.head(SHOWN)
     strings = [name for name, dtype in head.schema.items() if dtype == pl.String and name != LINE]
     written = {name: head[name].str.strip_chars().set(head[name].str.strip_chars().str.contains(MISSING), None) for name in strings}
-    return {name for name, each in written.items() if each.count() and each.cast(pl.Float64, strict=False).count() == 0}
+    in_words = {name for name, each in written.items() if each.count() and each.cast(pl.Float64, strict=False).count() == 0}
+    return in_words, {name for name, each in written.items() if not each.count()}
 
 
 _WORDY = r"^[\s#\"(\[]*([A-Za-z°]|1e-7 deg|1?\s*$|-\s*$)"
