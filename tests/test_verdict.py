@@ -563,4 +563,4 @@ def test_a_verdict_is_its_sentences_why_before_how_many_and_older_ones_are_still
     older = json.loads(verdict.model_dump_json()) | {"lead": "Not shown. Because."}
     del older["sentences"]
     read = type(verdict).model_validate(older)
-    assert (read.lead, read.sentences) == (["Not shown. Because."], [])
+    assert (read.lead, read.sentences) == (["Not shown. Because."], [verdict.words])

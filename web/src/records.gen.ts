@@ -641,7 +641,7 @@ export interface Verdict {
     inside: boolean | null;
     /** The verdict as sentences: what, how much, worst where and when, what was assumed, whether truth was known. */
     words: string;
-    /** The same one by one: first what, then why, the gravest first; empty in runs that are older than this field. */
+    /** The same one by one: first what, then why, the gravest first; in runs that are older than this field all in one. */
     sentences: string[];
     /** Those without what a page states beside it: the worst margins, the method that judged, the lateral bounds against truth. */
     lead: string[];

@@ -80,7 +80,7 @@ def _metres(value: float | None) -> str:
 def _print(run: Run) -> None:
     summary = run.summary
     out_console.print(summary.title, style="bold", markup=False)
-    first, *beside = summary.verdict.sentences or [summary.verdict.words]
+    first, *beside = summary.verdict.sentences
     out_console.print(first, markup=False, highlight=False)
     for sentence in beside:
         out_console.print(f"  - {sentence}", markup=False, highlight=False)

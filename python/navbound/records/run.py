@@ -5,9 +5,9 @@ Presentation reads these and the epoch table; it computes nothing. Field names f
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import Field, model_validator
 
 from navbound.records.base import Record
 from navbound.records.faults import FaultSummary
@@ -16,11 +16,6 @@ from navbound.records.material import Operation
 from navbound.records.performance import Performance
 from navbound.records.procedure import BesideProcedure, ProcedureFlown
 from navbound.records.verdict import LEAST_SHARE, BeliefState, VerdictId
-
-
-def _listed(lead: Any) -> Any:
-    """Older runs keep the sentences as one text."""
-    return [lead] if isinstance(lead, str) else lead
 
 
 class Worst(Record):
@@ -112,8 +107,8 @@ class Verdict(Record):
     words: str
     """The verdict as sentences: what, how much, worst where and when, what was assumed, whether truth was known."""
     sentences: list[str] = Field(default_factory=list)
-    """The same one by one: first what, then why, the gravest first; empty in runs that are older than this field."""
-    lead: Annotated[list[str], BeforeValidator(_listed)] = Field(default_factory=list)
+    """The same one by one: first what, then why, the gravest first; in runs that are older than this field all in one."""
+    lead: list[str] = Field(default_factory=list)
     """Those without what a page states beside it: the worst margins, the method that judged, the lateral bounds against truth."""
     requirement: str
     method: str
@@ -194,6 +189,20 @@ class Verdict(Record):
     worst_integrity: Worst | None
     truth_known: bool
     experimental: bool = False
+
+    @model_validator(mode="before")
+    @classmethod
+    def _in_sentences(cls, fields: Any) -> Any:
+        """Runs that are older than the lists keep one text of each."""
+        if not isinstance(fields, dict):
+            return fields
+        of_lead = fields.get("lead")
+        lists = {"lead": [of_lead] if of_lead else []} if isinstance(of_lead, str) else {}
+        return {"sentences": [fields["words"]] if fields.get("words") else [], **fields, **lists}
+
+    def stating(self, sentences: list[str], lead: list[str]) -> Verdict:
+        """The same verdict in these sentences."""
+        return self.model_copy(update={"words": " ".join(sentences), "sentences": sentences, "lead": lead})
 
 
 class PhaseSummary(Record):

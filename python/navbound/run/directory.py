@@ -61,7 +61,7 @@ class Run:
         rows = [("epochs", str(self.table.height)), *((name, str(n)) for name, n in self.summary.n_status.items())]
         cells = "".join(f"<tr><td>{escape(name)}</td><td>{escape(n)}</td></tr>" for name, n in rows)
         report = "" if self.path is None else f"<p>Report: <code>{escape(str(self.path / REPORT))}</code></p>"
-        first, *beside = verdict.sentences or [verdict.words]
+        first, *beside = verdict.sentences
         why = "".join(f"<li>{escape(sentence)}</li>" for sentence in beside)
         return f"<p><b>{escape(self.summary.title)}</b></p><p>{escape(first)}</p><ul>{why}</ul><table>{cells}</table>{report}"
 

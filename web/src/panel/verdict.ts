@@ -67,7 +67,7 @@ export function earnsGreen(v: Pick<Verdict, "id" | "assumed">): boolean {
 
 /** What the numbers beside it do not say; a machine finds the shares in it. */
 function lead(v: Verdict): HTMLElement {
-    const [first, ...beside] = [v.lead, v.sentences, [v.words]].find((each) => each.length > 0)!;
+    const [first, ...beside] = v.lead.length > 0 ? v.lead : v.sentences;
     const words = valueOf("share_inside", v.share_inside, first!);
     words.classList.replace("value", "lead");
     return el("div", { class: "words" },

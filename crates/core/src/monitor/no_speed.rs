@@ -20,6 +20,12 @@ pub fn is_no_speed(written: f64, unit_mps: f64) -> bool {
     speed_mps > IMPOSSIBLE_MPS || (speed_mps > FASTEST_MPS && of_program()) || written == BELOW_ANY
 }
 
+/// A speed over the ground that a live source states; none where its number is no speed, or below zero \[m/s\].
+#[must_use]
+pub fn stated_mps(written: f64, unit_mps: f64) -> Option<f64> {
+    (written >= 0.0 && !is_no_speed(written, unit_mps)).then_some(written * unit_mps)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,7 +6,7 @@ use super::statements::{self, PassedOver, Statements};
 use crate::claims::Claim;
 use crate::counters::Refused;
 use crate::position::{Position, Shown, TrackId};
-use navbound_core::monitor::no_speed::is_no_speed;
+use navbound_core::monitor::no_speed::stated_mps;
 use navbound_core::quantity::{GpsTime, Reason, Status};
 use serde::{Deserialize, Deserializer};
 use std::borrow::Cow;
@@ -198,7 +198,7 @@ fn whole(line: &Line<'_>) -> Decoded {
         h_m: line.est_h_m,
         fte_m: line.fte_m,
         course_rad: line.course_rad,
-        ground_speed_mps: line.ground_speed_mps.filter(|written| !(*written < 0.0 || is_no_speed(*written, 1.0))),
+        ground_speed_mps: line.ground_speed_mps.and_then(|written| stated_mps(written, 1.0)),
         covariance_m2: line.covariance(),
         // A level of nothing bounds nothing.
         hpl_m: line.hpl_m.map(|level| if level > 0.0 { level } else { f64::NAN }),

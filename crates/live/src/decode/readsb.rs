@@ -6,7 +6,7 @@ use super::statements::{self, PassedOver, Statements};
 use crate::claims::{Claim, Claims};
 use crate::counters::Refused;
 use crate::position::{Position, Shown, TrackId};
-use navbound_core::monitor::no_speed::is_no_speed;
+use navbound_core::monitor::no_speed::stated_mps;
 use navbound_core::quantity::{KNOT_MPS, Metres, Reason, Status};
 use navbound_formats::time;
 use serde::Deserialize;
@@ -171,7 +171,7 @@ pub(super) fn position(bytes: &[u8], claims: &Claims, statements: &Statements) -
         lon_rad: Some(lon_deg.to_radians()),
         h_m: line.alt_geom.map(|feet| Metres::feet(feet).m()),
         age_s: if of_the_future { 0.0 } else { age_s.max(0.0) },
-        ground_speed_mps: line.gs.filter(|knots| !is_no_speed(*knots, KNOT_MPS)).map(|knots| knots * KNOT_MPS),
+        ground_speed_mps: line.gs.and_then(|knots| stated_mps(knots, KNOT_MPS)),
         shown: Shown { claim, ..Shown::default() },
         ..Position::new(track, time)
     };
@@ -274,7 +274,7 @@ mod tests {
 
     #[test]
     fn numbers_that_are_no_speed_are_not_stated() {
-        for knots in ["1023.0", "-1.0", "2000.0"] {
+        for knots in ["1023.0", "-1.0", "-5.0", "2000.0"] {
             assert_eq!(stated(&WHOLE.replace("360.0", knots)).unwrap().ground_speed_mps, None, "{knots}");
         }
     }

@@ -300,8 +300,7 @@ def _summary(result: Performance, parts: list[Stored], honesty: CovarianceConsis
         id=decided,
         # A service level is no RNP: what its id says stands in the words.
         inside=None,
-        words=" ".join(sentences),
-        sentences=sentences,
+        words="",
         requirement=names,
         method="performance",
         share_inside=None,
@@ -318,7 +317,7 @@ def _summary(result: Performance, parts: list[Stored], honesty: CovarianceConsis
         worst_integrity=None,
         truth_known=result.truth_known,
         experimental=result.experimental != "",
-    )
+    ).stating(sentences, [])
     by_source: dict[str, list[str]] = {}
     for each in result.levels:
         by_source.setdefault(each.level.source, []).append(each.level.id)

@@ -155,8 +155,7 @@ def verdict_of(
     )
     sentences, lead = verdict_words(verdict, judge, risks, material.covariance, material.labels)
     of_levels = protection_words(protection)
-    sentences += of_levels
-    return verdict.model_copy(update={"words": " ".join(sentences), "sentences": sentences, "lead": [*lead, *of_levels]})
+    return verdict.stating([*sentences, *of_levels], [*lead, *of_levels])
 
 
 def _scattered(material: Material, known: VerdictFacts, judging: str) -> list[str]:

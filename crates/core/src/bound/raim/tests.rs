@@ -5,17 +5,9 @@ use crate::bound::araim::exclusion::Decision;
 use crate::signal::Constellation::{Galileo, Gps};
 use nalgebra::{SMatrix, SVector};
 
-/// Azimuth and elevation in degrees, sigma in metres.
-const SKY: [(f64, f64, f64); 8] = [
-    (10.0, 70.0, 1.2),
-    (65.0, 20.0, 2.0),
-    (120.0, 45.0, 1.4),
-    (170.0, 12.0, 3.1),
-    (215.0, 33.0, 1.7),
-    (260.0, 8.0, 3.9),
-    (305.0, 55.0, 1.3),
-    (345.0, 25.0, 1.9),
-];
+#[path = "../../../tests/common/sky.rs"]
+mod nine;
+use nine::SKY;
 
 fn sight(&(az, el, sigma): &(f64, f64, f64), constellation: crate::signal::Constellation) -> Sight {
     let (az, el) = (f64::to_radians(az), f64::to_radians(el));

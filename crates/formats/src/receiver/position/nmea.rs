@@ -32,24 +32,16 @@ const RMC: u32 = name(*b"RMC");
 const VTG: u32 = name(*b"VTG");
 const ZDA: u32 = name(*b"ZDA");
 
-const FIELDS: Fields =
-    &[("est_lat_rad", "GGA"), ("est_lon_rad", "GGA"), ("est_h_m", "GGA altitude + separation"), ("time", "GGA, dated by RMC or ZDA:utc")];
-const FIELDS_AND_SPEED: Fields = &[
-    ("est_lat_rad", "GGA"),
-    ("est_lon_rad", "GGA"),
-    ("est_h_m", "GGA altitude + separation"),
-    ("time", "GGA, dated by RMC or ZDA:utc"),
-    ("ground_speed_mps", "RMC"),
-    ("ground_track_rad", "RMC"),
-];
-const FIELDS_AND_VTG: Fields = &[
-    ("est_lat_rad", "GGA"),
-    ("est_lon_rad", "GGA"),
-    ("est_h_m", "GGA altitude + separation"),
-    ("time", "GGA, dated by RMC or ZDA:utc"),
-    ("ground_speed_mps", "VTG"),
-    ("ground_track_rad", "VTG"),
-];
+const OF_GGA: [(&str, &str); 4] =
+    [("est_lat_rad", "GGA"), ("est_lon_rad", "GGA"), ("est_h_m", "GGA altitude + separation"), ("time", "GGA, dated by RMC or ZDA:utc")];
+const FIELDS: Fields = &OF_GGA;
+const FIELDS_AND_RMC: Fields = &with_speed_of("RMC");
+const FIELDS_AND_VTG: Fields = &with_speed_of("VTG");
+
+const fn with_speed_of(sentence: &'static str) -> [(&'static str, &'static str); 6] {
+    let [lat, lon, height, time] = OF_GGA;
+    [lat, lon, height, time, ("ground_speed_mps", sentence), ("ground_track_rad", sentence)]
+}
 
 const fn name([a, b, c]: [u8; 3]) -> u32 {
     u32::from_be_bytes([0, a, b, c])
@@ -193,7 +185,7 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
         },
         fields: match (speed_mps, of_rmc) {
             (None, _) => FIELDS,
-            (_, Some(_)) => FIELDS_AND_SPEED,
+            (_, Some(_)) => FIELDS_AND_RMC,
             _ => FIELDS_AND_VTG,
         },
         covariance_from: of_gst.map(|_| "GST").or(of_gbs.map(|_| "GBS")).or(of_pubx.map(|_| "PUBX,00 hAcc, vAcc")),
