@@ -42,6 +42,13 @@ def work():
 
 if __name__ == "__main__":
     threading.Thread(target=time.sleep, args=(30.0,), daemon=True).start()
+    begun = threading.Thread.start
+
+    def late(thread):
+        begun(thread)
+        time.sleep(LATE_S)
+
+    threading.Thread.start = late
     spawn = util.spawnv_passfds
 
     def interrupted(path, args, fds):
@@ -61,9 +68,10 @@ if __name__ == "__main__":
 '''
 
 
-def test_ctrl_c_between_the_birth_of_a_child_and_its_first_data_leaves_it_whole(tmp_path: Path) -> None:
+@pytest.mark.parametrize("late_s", [0.0, 1.0], ids=["main in time", "main late"])
+def test_ctrl_c_between_the_birth_of_a_child_and_its_first_data_leaves_it_whole(late_s: float, tmp_path: Path) -> None:
     program = tmp_path / "interrupted.py"
-    program.write_text(INTERRUPTED)
+    program.write_text(INTERRUPTED.replace("LATE_S", str(late_s)))
     done = subprocess.run([sys.executable, program], capture_output=True, text=True, timeout=60, check=False)
     assert (done.returncode, done.stderr, sorted(done.stdout.split())) == (0, "", ["interrupted", "worked"])
 

@@ -31,6 +31,8 @@ def deaf_to_interrupts(start: Callable[[], Started]) -> Started:
         signal and another thread takes it; raised between the birth of a child and its first data, it leaves a child that reads nothing.
     """
     with ThreadPoolExecutor(1) as alone:
+        # Ctrl-C in the birth of the thread leaves one that nobody waits for: it has nothing to do yet.
+        alone.submit(int).result()
         return alone.submit(_blocked, start).result()
 
 
