@@ -17,7 +17,7 @@ import navbound
 from navbound import FormatError, InputError, write
 from navbound.cli import main as cli
 from navbound.read import read
-from navbound.read.checks.statements import other_place
+from navbound.read.columns.place_names import other_place
 from navbound.read.pieces.reading import read_pieces
 from navbound.words.plurals import counted
 from test_write import table as solution

@@ -77,6 +77,13 @@ AGAINST: list[dict[str, object]] = [
     {"aux": "48 0.0 N 12 30.0 E"},
     {"geom": [48.0, 12.5]},
     {"gps_position": "48.01, 12.52"},
+    {"gps_lat_lon": "48.01, 12.52"},
+    {"latLon2": [48.01, 12.52]},
+    {"lat_dir": "S"},
+    {"N/S": "South"},
+    {"EW": "W"},
+    {"gps": {"lonRef": "w"}},
+    {"hemisphere": "SE"},
 ]
 NOT_AGAINST: list[dict[str, object]] = [
     {"alerts": []},
@@ -95,6 +102,12 @@ NOT_AGAINST: list[dict[str, object]] = [
     {"destination": "SRID=4326;POINT(12.5 48.0)"},
     {"levels": [48.0, 12.5]},
     {"geom": [0.0, 0.0]},
+    {"gps_lat_lon": "48.71, 1.72"},
+    {"lat_dir": "N", "lon_dir": "E"},
+    {"hemisphere": "NE"},
+    {"dest_lat_dir": "S"},
+    {"wind_from": "S"},
+    {"lat_counter": 17},
 ]
 
 

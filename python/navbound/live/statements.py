@@ -9,13 +9,11 @@ from navbound import _core
 from navbound.read.checks.statements import (
     BARE_LENGTHS,
     BEFORE,
-    INERTIAL_APART_M,
     KINDS,
-    PLACES_APART_M,
     kind_of,
-    place_words,
     speaks_of_integrity,
 )
+from navbound.read.columns.place_names import INERTIAL_APART_M, PLACES_APART_M, place_words
 from navbound.read.quantities import POSITION_TIME_NAMES, QUANTITIES, QUANTITY, STATED_QUANTITIES, UNITS
 from navbound.table.columns import COVARIANCE
 
@@ -48,7 +46,7 @@ def for_core() -> tuple[Kinds, list[str], Places]:
         kinds.append((sorted({*spelled, *several}.difference(named)), sorted(kind.fine), least, most))
     mode = kind_of("nav_mode")
     modes = sorted((mode.against if mode is not None else frozenset()) - _USABLE_MODES)
-    return kinds, modes, (place_words(), [PLACES_APART_M, INERTIAL_APART_M])
+    return kinds, modes, (list(place_words()), [PLACES_APART_M, INERTIAL_APART_M])
 
 
 _SHOWN = 20

@@ -157,7 +157,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     _q("sigma_e_m", 0.0, _INF, m="sde sde_m sd_e sd_e_m std_e std_e_m std_east std_east_m sigma_e sigma_east_m"),
     _q("sigma_n_m", 0.0, _INF, m="sdn sdn_m sd_n sd_n_m std_n std_n_m std_north std_north_m sigma_n sigma_north_m"),
     _q("sigma_u_m", 0.0, _INF, m="sdu sdu_m sd_u sd_u_m std_u std_u_m std_up std_up_m sigma_u sigma_up_m"),
-    _q("epu_m", 0.0, _INF, m="epu anp_m", nm="epu_nm anp_nm", written="anp"),
+    _q("epu_m", 0.0, _INF, m="epu anp_m", nm="epu_nm anp_nm", written="anp actual_navigation_performance"),
     _q("rc_m", 0.0, _INF, m="rc", nm="rc_nm"),
     _q("nac_p", 0.0, 15.0, **{"1": "nacp nac_p"}),
     _q("nic", 0.0, 15.0, **{"1": "nic"}),

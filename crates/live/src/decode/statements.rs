@@ -32,13 +32,24 @@ struct Places {
     inertial: BTreeSet<String>,
     /// Of a place with both coordinates in one value.
     pair: BTreeSet<String>,
+    /// Of whole numbers that count something.
+    counts: BTreeSet<String>,
+    /// Of a hemisphere.
+    hemisphere: BTreeSet<String>,
+    /// Words of the hemispheres, below zero and above it, of a latitude and of a longitude.
+    sides: [[BTreeSet<String>; 2]; 2],
     /// How far another place may be away, and one of inertial sensors \[m\].
     apart_m: [f64; 2],
 }
 
-/// Parts of names: latitude, longitude, what is none of the vehicle, inertial sensors, both coordinates in one; and how far such places may be
-/// away \[m\].
-pub type PlaceWords = ([Vec<String>; 5], [f64; 2]);
+/// Parts of names: latitude, longitude, what is none of the vehicle, inertial sensors, both coordinates in one, counts, hemispheres; words of
+/// the south, the north, the west and the east; and how far such places may be away \[m\].
+pub type PlaceWords = ([Vec<String>; 11], [f64; 2]);
+
+/// Whole numbers up to it under a name that counts are no coordinates (ours) \[1\].
+const MOST_COUNTED: f64 = 1e5;
+/// Nearer to zero a letter of a hemisphere contradicts nothing (ours) \[rad\].
+const NO_SIDE_RAD: f64 = 1e-4;
 
 impl Places {
     /// Whether a value with both coordinates is a place of the vehicle that its position contradicts, in whichever order they are.
@@ -51,7 +62,7 @@ impl Places {
             Value::Array(all) => numbers(all).map(|deg| Written { deg, ordered: false, by_itself: false }),
             _ => None,
         };
-        let named = any(&self.pair) || plain(key).contains("geohash");
+        let named = any(&self.pair) || (any(&self.latitude) && any(&self.longitude)) || plain(key).contains("geohash");
         let Some(written) = written.filter(|written| (written.by_itself || named) && written.deg != [0.0; 2] && !any(&self.of_others))
         else {
             return false;
@@ -76,6 +87,9 @@ impl Places {
         let number = value.as_f64().or_else(|| value.as_str().and_then(angle));
         // Who has no position writes zeros.
         let Some(number) = number.filter(|number| *number != 0.0 && !any(&self.of_others)) else { return false };
+        if any(&self.counts) && number.fract() == 0.0 && number.abs() <= MOST_COUNTED {
+            return false;
+        }
         let unit = |name: &str| parts.iter().any(|part| part == name);
         let other_rad = if unit("rad") { number } else { (number * if unit("e7") || unit("1e7") { 1e-7 } else { 1.0 }).to_radians() };
         let there = if is_latitude { [other_rad, lon_rad] } else { [lat_rad, other_rad] };
@@ -83,6 +97,24 @@ impl Places {
         let apart_m = east.abs().max(north.abs());
         let [of_any, of_inertial] = self.apart_m;
         apart_m > if any(&self.inertial) { of_inertial } else { of_any }
+    }
+
+    /// Whether a text is a hemisphere on the other side of the position, under a name of a coordinate or of a hemisphere.
+    fn hemisphere_contradicts(&self, key: &str, value: &Value, (lat_rad, lon_rad): LatLon) -> bool {
+        let Value::String(text) = value else { return false };
+        let word: String = text.chars().filter(|c| c.is_alphabetic()).flat_map(char::to_uppercase).collect();
+        let parts = parts(key);
+        let any = |words: &BTreeSet<String>| parts.iter().any(|part| words.contains(part.trim_end_matches(|c: char| c.is_ascii_digit())));
+        let of_any = any(&self.hemisphere) || self.hemisphere.contains(&plain(key));
+        let letters = |axis: usize| match word.as_bytes() {
+            [one @ (b'N' | b'S'), other @ (b'E' | b'W')] => Some(if [*one, *other][axis] == [b'S', b'W'][axis] { -1.0 } else { 1.0 }),
+            _ => [-1.0, 1.0].into_iter().zip(&self.sides[axis]).find_map(|(sign, words)| words.contains(&word).then_some(sign)),
+        };
+        let axes = [(lat_rad, any(&self.latitude)), (lon_rad, any(&self.longitude))].into_iter().enumerate();
+        !any(&self.of_others)
+            && axes.into_iter().any(|(axis, (angle_rad, named))| {
+                (named || of_any) && angle_rad.abs() > NO_SIDE_RAD && letters(axis).is_some_and(|sign| sign * angle_rad < 0.0)
+            })
     }
 }
 
@@ -150,8 +182,10 @@ pub type StatementRow = (Vec<String>, Vec<String>, Option<f64>, Option<f64>);
 impl Statements {
     /// Of kinds, of words of `nav_mode` that speak against the position, and of names of other places.
     pub fn new(kinds: Vec<StatementRow>, modes: Vec<String>, (words, apart_m): PlaceWords) -> Self {
-        let [latitude, longitude, of_others, inertial, pair] = words.map(|each| each.into_iter().collect());
-        let places = Places { latitude, longitude, of_others, inertial, pair, apart_m };
+        let [latitude, longitude, of_others, inertial, pair, counts, hemisphere, south, north, west, east] =
+            words.map(|each| each.into_iter().collect());
+        let sides = [[south, north], [west, east]];
+        let places = Places { latitude, longitude, of_others, inertial, pair, counts, hemisphere, sides, apart_m };
         let mut all = Self { modes: modes.into_iter().collect(), places, ..Self::default() };
         for (names, fine, least, most) in kinds {
             all.by_name.extend(names.into_iter().map(|name| (plain(&name), all.kinds.len())));
@@ -187,7 +221,11 @@ impl Statements {
         match value {
             Value::Object(inner) => inner.iter().any(|(name, each)| self.elsewhere(&format!("{key}_{name}"), each, at)),
             Value::String(text) if written(text).is_some() => written(text).is_some_and(|value| self.elsewhere(key, &value, at)),
-            _ => self.places.contradict(key, value, at) || self.places.pair_contradicts(key, value, at),
+            _ => {
+                self.places.contradict(key, value, at)
+                    || self.places.pair_contradicts(key, value, at)
+                    || self.places.hemisphere_contradicts(key, value, at)
+            }
         }
     }
 

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
-from navbound.read.checks.statements import name_parts
-from navbound.read.columns.naming import declare
+from navbound.read.columns.naming import declare, name_parts
 from navbound.read.quantities import UNITS
 from navbound.words.plurals import counted
 

@@ -18,13 +18,14 @@ import polars as pl
 from navbound import _core
 from navbound.read.beside import utm
 from navbound.read.checks.places import east_north_m
-from navbound.read.checks.statements import (
+from navbound.read.columns.naming import name_parts
+from navbound.read.columns.place_names import (
     INERTIAL_APART_M,
     PLACES_APART_M,
+    is_count,
     is_no_vehicle,
     is_pair,
     keeps_inertial,
-    name_parts,
     other_place,
 )
 from navbound.read.tables.cells import MISSING
@@ -50,6 +51,8 @@ _FORMS: dict[str, float] = {"deg": math.radians(1.0), "deg_e7": math.radians(1e-
 """What a coordinate may be written in, to radians."""
 _MARKS = r"(?i)point\s*[zm]*\s*\(|^\s*[+-]\d[\d.]+[+-]\d|\d.*[nsew].*\d|[nsew].*\d.*[nsew]|\d\.\d*[\s,;]+[-+]?\d+\.\d"
 """What every text that is a place has."""
+_MOST_COUNTED = 1e5
+"""Whole numbers up to it under a name that counts are no coordinates; those of 1e-7 degrees are larger. Provenance: ours. [1]"""
 _EARTH_M = (6.3e6, 6.5e6)
 """Distances from the Earth's centre that make three numbers a position. [m]"""
 
@@ -90,6 +93,9 @@ class Form(NamedTuple):
         return any((high - low) * EARTH_RADIUS_M > _MOVED_M for low, high in zip(self.low, self.high, strict=True))
 
 
+_Several = Literal["", "ecef", "utm", "numbers"]
+
+
 class Place(NamedTuple):
     """Columns that are another place: one of an axis, one with both, or three of Earth-fixed axes.
 
@@ -97,6 +103,8 @@ class Place(NamedTuple):
     ----------
     by_name : bool
         The name says that it is one; otherwise its texts must.
+    form : {"", "ecef", "utm", "numbers"}
+        Of several columns, what they hold.
     """
 
     names: tuple[str, ...]
@@ -104,6 +112,7 @@ class Place(NamedTuple):
     whose: tuple[str, ...]
     inertial: bool
     by_name: bool = True
+    form: _Several = ""
 
 
 def find(free: Sequence[str], declared: Iterable[str]) -> list[Place]:
@@ -116,8 +125,11 @@ def find(free: Sequence[str], declared: Iterable[str]) -> list[Place]:
             places.append(Place((name,), of.axis, of.whose, of.inertial))
         elif of is None and axes == [LAT, LON] and not is_no_vehicle(name):
             places.append(Place((name,), None, (name,), inertial=keeps_inertial(name), by_name=is_pair(name) or _is_geohash(name)))
-    several = (_ecef(free), _utm(free)) if axes == [LAT, LON] else ()
-    return [*places, *(Place(names, None, names, inertial=False) for names in several if names is not None)]
+    if axes == [LAT, LON]:
+        several: list[tuple[_Several, tuple[str, ...] | None]] = [("ecef", _ecef(free)), ("utm", _utm(free))]
+        several += [("numbers", names) for names in _numbered(free)]
+        places += [Place(names, None, names, inertial=False, form=form) for form, names in several if names is not None]
+    return places
 
 
 def _ecef(free: Sequence[str]) -> tuple[str, str, str] | None:
@@ -136,6 +148,18 @@ def _utm(free: Sequence[str]) -> tuple[str, str] | None:
     return (axes[0][0], axes[1][0]) if all(len(each) == 1 for each in axes) else None
 
 
+def _numbered(free: Sequence[str]) -> list[tuple[str, str]]:
+    """Two columns that are one pair of coordinates, `gps_lat_lon_0` and `gps_lat_lon_1`."""
+    pairs: dict[str, list[str]] = {}
+    for name in free:
+        stem = re.sub(r"[^A-Za-z0-9]*\d[^A-Za-z0-9]*$", "", name)
+        if stem != name and is_pair(stem):
+            pairs.setdefault(stem, []).append(name)
+    return [(names[0], names[1]) for names in pairs.values() if len(names) == _OF_A_PAIR]
+
+
+_OF_A_PAIR = 2
+"""Numbers of a place. [1]"""
 _EASTINGS, _NORTHINGS = frozenset(("e", "x", "east", "easting")), frozenset(("n", "y", "north", "northing"))
 
 
@@ -204,11 +228,11 @@ def _apart_m(place: Place, own: NDArray[np.float64], there: NDArray[np.float64])
 
 def _read(place: Place, frame: pl.DataFrame, own: NDArray[np.float64]) -> tuple[int, _Forms]:
     """How many numbers are there, and the coordinates in each form that they may have."""
-    if len(place.names) == _GRID:
-        east_m, north_m = (_floats(frame[name].cast(pl.Float64, strict=False)) for name in place.names)
-        return _of_utm(east_m, north_m, own)
-    if len(place.names) > 1:
+    if place.form == "ecef":
         return _of_ecef(frame.select(place.names))
+    if place.form:
+        first, second = (_floats(frame[name].cast(pl.Float64, strict=False)) for name in place.names)
+        return _of_utm(first, second, own) if place.form == "utm" else _of_numbers(first, second)
     column = frame[place.names[0]]
     if place.axis is None:
         return _of_pairs(column, by_name=place.by_name)
@@ -219,6 +243,8 @@ def _of_axis(column: pl.Series, axis: Axis, *, radians: bool) -> tuple[int, _For
     numbers = _angles(column) if column.dtype == pl.String else _floats(column)
     # A receiver without a fix writes 0.
     numbers[numbers == 0.0] = np.nan
+    if is_count(column.name) and not (numbers % 1.0 > 0.0).any() and not (np.abs(numbers) > _MOST_COUNTED).any():
+        numbers[:] = np.nan
     forms, most = ({"rad": 1.0} if radians else _FORMS), 0.5 * np.pi if axis == LAT else 2.0 * np.pi
     read: _Forms = []
     angles = {form: numbers * factor for form, factor in forms.items()}
@@ -278,8 +304,8 @@ def _of_pairs(column: pl.Series, *, by_name: bool) -> tuple[int, _Forms]:
     return column.len() - column.null_count(), read
 
 
-_GRID = 2
-"""Columns of a place in a plane. [1]"""
+def _of_numbers(first: NDArray[np.float64], second: NDArray[np.float64]) -> tuple[int, _Forms]:
+    return _of_pairs(pl.Series([[a, b] for a, b in zip(first, second, strict=True)], dtype=pl.List(pl.Float64)), by_name=True)
 
 
 def _of_utm(east_m: NDArray[np.float64], north_m: NDArray[np.float64], own: NDArray[np.float64]) -> tuple[int, _Forms]:

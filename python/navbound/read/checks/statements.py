@@ -15,7 +15,8 @@ import polars as pl
 
 from navbound import _core
 from navbound.read import own_positions
-from navbound.read.columns.naming import apart_at_capitals
+from navbound.read.columns.naming import LONGEST_PARTED, name_parts
+from navbound.read.columns.place_names import NO_TRUTH, speaks_of_place
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -347,8 +348,6 @@ KINDS: tuple[Kind, ...] = (
 
 _BY_NAME = {name.replace("_", ""): kind for kind in KINDS for name in kind.names}
 
-_LONGEST = 200
-"""Characters of a name that are looked at. [1]"""
 _SPEAKS = _words(
     "status "
     "valid invalid validity fix quality raim fde integrity alert alarm warning caution fault failure fail failed health healthy "
@@ -395,14 +394,9 @@ _NO_POSITION = _words(
 """Parts of names of something else. Provenance: ours."""
 
 
-def name_parts(name: str) -> list[str]:
-    """Parts of a name, in small letters: at what is neither letter nor digit, and before a capital."""
-    return re.split(r"[^a-z0-9]+", apart_at_capitals(name[:_LONGEST]).lower())
-
-
 def _parts_of_lengths(name: str) -> set[str]:
     """The parts of a name, and each without the plane or the share that it is of: `err2d`, `hpe95`."""
-    parts = {*name_parts(name), name[:_LONGEST].lower()}
+    parts = {*name_parts(name), name[:LONGEST_PARTED].lower()}
     return parts | {_OF_PLANE_OR_SHARE.sub("", part) for part in parts}
 
 
@@ -414,7 +408,6 @@ _OF_PLANE_OR_SHARE = re.compile(rf"(?<=[a-z])({'|'.join(_ENDINGS)})$")
 _APART = _words("dist distance offset offs diff difference delta separation gap discrepancy deviation displacement residual misclosure")
 _REFERENCE, _POSITION = _words("ref reference"), _words("true actual surveyed known")
 _OF_POSITION = _words("position pos point place location")
-_NO_TRUTH = _words("station base receiver frame system datum ellipsoid waypoint wpt runway thr threshold line path")
 """Parts of names of a distance from the true position, and from something else that is called a reference. Provenance: ours."""
 
 
@@ -423,101 +416,23 @@ def _speaks_of_truth(name: str) -> bool:
     parts = set(name_parts(name))
     if not _NO_POSITION.isdisjoint(parts):
         return False
-    return "truth" in name[:_LONGEST].lower() or _speaks_of_distance_from_truth(name)
+    return "truth" in name[:LONGEST_PARTED].lower() or _speaks_of_distance_from_truth(name)
 
 
 def _speaks_of_distance_from_truth(name: str) -> bool:
-    parts, together = set(name_parts(name)), name[:_LONGEST].lower()
+    parts, together = set(name_parts(name)), name[:LONGEST_PARTED].lower()
     words = ("dist", "offset", "diff", "delta")
     apart = not _APART.isdisjoint(parts) or ("truth" in together and any(each in together for each in words))
     of_truth = "truth" in together or (not _POSITION.isdisjoint(parts) and not _OF_POSITION.isdisjoint(parts))
-    of_reference = not _REFERENCE.isdisjoint(parts) and _NO_TRUTH.isdisjoint(parts)
+    of_reference = not _REFERENCE.isdisjoint(parts) and NO_TRUTH.isdisjoint(parts)
     return apart and (of_truth or of_reference)
-
-
-_RECEIVERS = _words("true gps gnss raw irs ins fms adsb own est fix rtk ref")
-_LATITUDES = _words("lat latitude latitud breite breitengrad") | {f"{whose}lat" for whose in _RECEIVERS}
-_LONGITUDES = _words("lon lng longitude longitud laenge länge laengengrad") | {
-    f"{whose}{lon}" for whose in _RECEIVERS for lon in ("lon", "lng")
-}
-_LATITUDE = _LATITUDES | _LONGITUDES
-_NO_VEHICLE = _NO_TRUTH | _words(
-    "airport origin destination dest departure dep arrival arr home target goal next prev previous start end first last site sensor radar "
-    "beacon antenna cpr centre center cell grid tile offset scale speed vel velocity rate err error sigma std var acc accuracy axis "
-    "pred predicted forecast intruder traffic lead leader min max mean avg average median "
-    "dot variance"
-)
-"""Parts of names of a latitude or a longitude, and of one that is none of the vehicle now. Provenance: ours."""
-_INERTIAL = _words("irs ins iru ir adiru adirs inertial dr dead reckoning deadreckoning")
-"""Parts of names of a place that only inertial sensors keep. Provenance: ours."""
-
-
-def _speaks_of_place(name: str) -> bool:
-    """Whether the name is one of another place of the vehicle: the truth of somebody else, a second receiver.
-
-    A number that is named of both coordinates is neither of them: PX4 counts `lat_lon_reset_counter`, and `delta_lat_lon[0]` is a step.
-    """
-    parts = {part.rstrip("0123456789") for part in name_parts(name)}
-    return (_LATITUDES.isdisjoint(parts) != _LONGITUDES.isdisjoint(parts)) and parts.isdisjoint(_NO_VEHICLE)
-
-
-@dataclass(frozen=True)
-class Place:
-    """What a column is by its name: which coordinate, of which place, and whether inertial sensors alone keep that."""
-
-    axis: Literal["est_lat_rad", "est_lon_rad"]
-    whose: tuple[str, ...]
-    inertial: bool
-
-
-def other_place(name: str) -> Place | None:
-    """The coordinate of another place of the vehicle that a column is by its name; or none."""
-    if not _speaks_of_place(name):
-        return None
-    parts = name_parts(name)
-    words = {part.rstrip("0123456789") for part in parts}
-    whose = tuple(re.sub("|".join(sorted(_LATITUDE, key=len, reverse=True)), "", part) for part in parts)
-    return Place("est_lat_rad" if words & _LATITUDES else "est_lon_rad", whose, keeps_inertial(name))
-
-
-def keeps_inertial(name: str) -> bool:
-    """Whether a name is one of what inertial sensors alone keep."""
-    return not _INERTIAL.isdisjoint(part.rstrip("0123456789") for part in name_parts(name))
-
-
-def is_no_vehicle(name: str) -> bool:
-    """Whether a name is one of a place that is none of the vehicle now."""
-    return not _NO_VEHICLE.isdisjoint(part.rstrip("0123456789") for part in name_parts(name))
-
-
-_PAIRS = _words("pos position coord coords coordinate coordinates geom geometry loc location point place latlon latlng lonlat")
-"""Parts of names of a place with both coordinates in one field. Provenance: ours."""
-
-
-def is_pair(name: str) -> bool:
-    """Whether a name is one of both coordinates of a place of the vehicle."""
-    return not _PAIRS.isdisjoint(name_parts(name)) and not is_no_vehicle(name)
-
-
-def place_words() -> list[list[str]]:
-    """Parts of names by which live knows other places, too.
-
-    Of a latitude, of a longitude, of what is none of the vehicle now, of what inertial sensors keep, and of both coordinates in one.
-    """
-    return [sorted(words) for words in (_LATITUDES, _LONGITUDES, _NO_VEHICLE, _INERTIAL, _PAIRS)]
-
-
-PLACES_APART_M = 1852.0
-"""Another place of the vehicle, of whatever sensor, contradicts the position beyond it. Provenance: ours. [m]"""
-INERTIAL_APART_M = 10 * 1852.0
-"""The same where inertial sensors alone keep the place: what RNP 10 allows them. Provenance: ours. [m]"""
 
 
 def speaks_of_integrity(name: str) -> bool:
     """Whether the name of a column that nothing reads, is one of a statement of integrity, a truth or another place."""
     parts = _parts_of_lengths(name)
     spoken = not _SPEAKS.isdisjoint([*parts, *(part.removesuffix("s") for part in parts)])
-    return spoken or _speaks_of_truth(name) or _speaks_of_place(name)
+    return spoken or _speaks_of_truth(name) or speaks_of_place(name)
 
 
 def speaks_of_accuracy(name: str) -> bool:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from navbound.errors import FormatError, InputError
 from navbound.read.beside.places import find
 from navbound.read.checks.statements import ACCURACY_WORDS, AGE, NUC, READSB_TYPE, kind_of
+from navbound.read.columns import hemispheres
 from navbound.read.columns.column import NO_COLUMN, OF_TRANSPONDER, POSITION, Assignment, Column
 from navbound.read.columns.lacking import refuse_twins, require
 from navbound.read.columns.naming import LONGEST_NAME, by_form, column_named, parted_form, plain_form, written_unit
@@ -84,6 +85,7 @@ def assign(
         A declared column that the file lacks, or no time, latitude or longitude: what is needed and the nearest names found.
     """
     names = list(names)
+    declared, stated_sides = hemispheres.apart(declared, names, path)
     quantities = QUANTITIES + (STATED_QUANTITIES if tuple(needs) == POSITION else LEVEL_QUANTITIES)
     own = {"time_ns", "est_lat_rad"} <= set(names) or any(plain_form(name)[0] == "track" and name in texts for name in names)
     columns: dict[str, Column] = {}
@@ -106,16 +108,16 @@ def assign(
     states = {q: c for q, c in _of_layouts(names).items() if c.name not in taken and q not in absent}
     columns = states | columns
     taken |= {c.name for c in states.values()}
-    sides = _sides([n for n in names if n not in taken and n in texts], [n for n in names if n not in taken and n in blank])
+    letters = hemispheres.named([n for n in names if n not in taken and n in texts], [n for n in names if n not in taken and n in blank])
+    beside_letters = taken.union(*letters.values())
     for quantity in quantities:
         if quantity.name not in columns and quantity.name not in absent:
-            assigned = _known(quantity, [n for n in names if n not in taken and n not in sides.values()], path, own=own)
+            assigned = _known(quantity, [n for n in names if n not in taken | beside_letters], path, own=own)
             if assigned is not None:
                 columns[quantity.name] = assigned
                 taken.add(assigned.name)
-    if (altitude := _of_phone(columns.get("altitude_m"), names)) is not None:
-        columns["altitude_m"] = altitude
-    columns |= {quantity: replace(columns[quantity], hemisphere=name) for quantity, name in sides.items() if quantity in columns}
+    columns |= _of_phone(columns, names)
+    columns |= hemispheres.signed(columns, letters, names, stated_sides)
     taken |= {c.hemisphere for c in columns.values() if c.hemisphere}
     times = of_times(times, [n for n in names if n not in taken], of_day, path)
     taken |= {c.name for c in times}
@@ -138,7 +140,7 @@ def assign(
     stated_of = frozenset({*(declared or {}), *beside})
     places = find([*(n for n in unused if n not in compared), *stating], stated_of) if tuple(needs) == POSITION else []
     speed = "" if tuple(needs) != POSITION or "ground_speed_mps" in columns.keys() | absent else _speed_without_unit(unused)
-    return Assignment(columns, times, unused, statements, again, places, absent, speed, stated_of)
+    return Assignment(columns, times, unused, statements, again, places, absent, speed, stated_of, frozenset(stated_sides))
 
 
 def _kinds(free: list[str], plain: set[str], texts: Container[str]) -> dict[str, Kind | None]:
@@ -177,38 +179,21 @@ def _speed_without_unit(free: list[str]) -> str:
     return next((plain[alias] for alias in names if alias in plain), "")
 
 
-_SIDE = r"(?:dir|direction|ref|hemi|hemisphere|indicator|ind|cardinal|sign|{0})"
-_HEMISPHERES = {
-    f"{kind}_{axis}_rad": re.compile(rf"{of}(?:{written})_?{_SIDE.format(sides)}|{of}{sides}(?:_?(?:ind|indicator|hemisphere|dir))?")
-    for axis, written, sides in (("lat", "lat|latitude", "n[_/]?s"), ("lon", "lon|lng|long|longitude", "e[_/]?w"))
-    for kind, of in (("est", "(?:gps|gnss)?_?"), ("truth", "truth_?"))
-}
-"""Names of columns of letters beside a coordinate. Provenance: ours, from headers of loggers and of EXIF."""
-
-
-def _sides(in_words: Iterable[str], blank: Iterable[str]) -> dict[str, str]:
-    """The columns of letters that say the hemisphere of a coordinate, by its quantity; what is blank at first may hold them later."""
-    # `NS` may be a number of satellites.
-    later = [name for name in blank if plain_form(name)[0] != "ns"]
-    forms = by_form([name for name in (*in_words, *later) if len(name) <= LONGEST_NAME])
-    matching = {quantity: next(filter(pattern.fullmatch, forms), None) for quantity, pattern in _HEMISPHERES.items()}
-    return {quantity: forms[form] for quantity, form in matching.items() if form is not None}
-
-
 _OF_PHONE = re.compile(r"(?:horizontal|vertical|speed|bearing|course|altitude)_accuracy(?:_.*)?")
 """Accuracies as the location services of Android, iOS and browsers name them, whose altitudes are in metres. Provenance: standard, from
 knowledge of the interfaces."""
 
 
-def _of_phone(altitude: Column | None, names: list[str]) -> Column | None:
+def _of_phone(columns: Mapping[str, Column], names: list[str]) -> dict[str, Column]:
     """An altitude in feet by its name alone beside two accuracies of a phone; its location service has it in metres."""
+    altitude = columns.get("altitude_m")
     if altitude is None or altitude.unit != "ft" or altitude.unit_stated or not OF_TRANSPONDER.isdisjoint(map(parted_form, names)):
-        return None
+        return {}
     of_phone = [name for name in names if _OF_PHONE.fullmatch(parted_form(name)) or parted_form(name) == "accuracy"]
     if len(of_phone) < _LEAST_NAMES or not any(parted_form(name) != "accuracy" for name in of_phone):
-        return None
+        return {}
     beside = " and ".join(f"“{name}”" for name in of_phone[:_LEAST_NAMES])
-    return replace(altitude, unit="m", because=f"as the names {beside} beside it are those of a phone")
+    return {"altitude_m": replace(altitude, unit="m", because=f"as the names {beside} beside it are those of a phone")}
 
 
 def _of_layouts(names: list[str]) -> dict[str, Column]:
@@ -291,7 +276,7 @@ def _declared(key: str, value: str, names: list[str], path: Path, known: tuple[Q
     if key in WEEK | DAY:
         return Column("time", name, key)
     if key not in quantities:
-        raise InputError("columns", key, domain=f"known quantities: time, {', '.join((*WEEK, *DAY, *quantities))}")
+        raise InputError("columns", key, domain=f"known quantities: time, {', '.join((*WEEK, *DAY, *hemispheres.STATED, *quantities))}")
     q = quantities[key]
     stated = unit or written_unit(name, q, path)
     unit = stated or q.aliases.get(plain_form(name)[0], q.si)

@@ -55,6 +55,8 @@ class Assignment:
         Other places of the vehicle under names that nothing reads, where nobody declared which one counts.
     declared : frozenset of str
         Quantities of which somebody declared the column.
+    declared_sides : frozenset of str
+        Coordinates of which somebody declared the column of hemispheres, or that there is none.
     absent : frozenset of str
         Quantities that no column is to be read as, nor made of others.
     speed : str
@@ -70,6 +72,7 @@ class Assignment:
     absent: frozenset[str] = frozenset()
     speed: str = ""
     declared: frozenset[str] = frozenset()
+    declared_sides: frozenset[str] = frozenset()
 
     @property
     def unread(self) -> list[str]:

@@ -50,6 +50,15 @@ def apart_at_capitals(name: str) -> str:
     return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name)
 
 
+LONGEST_PARTED = 200
+"""Characters of a name of which parts are compared. [1]"""
+
+
+def name_parts(name: str) -> list[str]:
+    """Parts of a name, in small letters: at what is neither letter nor digit, and before a capital."""
+    return re.split(r"[^a-z0-9]+", apart_at_capitals(name[:LONGEST_PARTED]).lower())
+
+
 def parted_form(name: str) -> str:
     """``latDeg`` to ``lat_deg``."""
     return plain_form(apart_at_capitals(name))[0] if len(name) <= LONGEST_NAME else plain_form(name)[0]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import polars as pl
 
+from navbound.read.columns.place_names import sides
 from navbound.read.quantities import QUANTITY, UNITS
 from navbound.words.plurals import agreeing, counted
 
@@ -77,17 +78,16 @@ def numbers(column: pl.Series, what: Column) -> tuple[pl.Series, pl.Series]:
     return frame["value"], frame["reason"]
 
 
-_SIDES = {"lat": (["S", "SOUTH"], ["N", "NORTH"]), "lon": (["W", "WEST"], ["E", "EAST"])}
-"""Words of a hemisphere below zero, and above it, by the axis."""
-
-
 def in_hemisphere(what: Column, values: pl.Series, reason: pl.Series, letters: pl.Series) -> tuple[pl.Series, pl.Series]:
     """Coordinates with the sign of their hemisphere, and why they are none: one without a hemisphere may be on either side.
 
     Programs write what is south or west with a minus or without one; with a minus nothing is north or east.
     """
-    letter = letters.cast(pl.String).str.strip_chars().str.to_uppercase()
-    below, above = (letter.is_in(words).fill_null(value=False) for words in _SIDES["lat" if "_lat_" in what.quantity else "lon"])
+    of = "lat" if "_lat_" in what.quantity else "lon"
+    letters = in_one_text(letters)
+    signs = {text: getattr(sides(text), of) for text in letters.drop_nulls().unique()}
+    sign = letters.replace_strict(signs, default=None, return_dtype=pl.Int8)
+    below, above = ((sign == side).fill_null(value=False) for side in (-1, 1))
     contradicts = above & (values < 0.0).fill_null(value=False)
     known = pl.when(below).then(-values.abs()).when(above & ~contradicts).then(values)
     why = (
@@ -95,6 +95,13 @@ def in_hemisphere(what: Column, values: pl.Series, reason: pl.Series, letters: p
         .when(~(below | above)).then(pl.lit(f"“{letters.name}” says no hemisphere"))
     )  # fmt: skip
     return pl.select(known.alias("value")).to_series(), pl.select(why.alias("reason")).to_series()
+
+
+def in_one_text(column: pl.Series) -> pl.Series:
+    """A column as texts: a list as its words, bytes as their characters."""
+    if column.dtype == pl.List(pl.String):
+        return column.list.join(" ")
+    return column.cast(pl.String, strict=False)
 
 
 def floats(column: pl.Series) -> NDArray[np.float64]:

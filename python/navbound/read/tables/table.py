@@ -360,13 +360,18 @@ def _columns_of(path: Path, keys: Iterable[tuple[str, ...]]) -> dict[tuple[str, 
 
 
 def apart(path: Path, frame: pl.DataFrame) -> pl.DataFrame:
-    """What columns of structures hold, as columns of their own."""
+    """What columns of structures hold, as columns of their own; words of a list of categories and bytes of a text are texts."""
     leaves = [each for name, dtype in frame.schema.items() for each in _leaves((name,), dtype)]
     if len(leaves) == frame.width and all(len(each) == 1 for each in leaves):
-        return frame
+        return _in_texts(frame)
     names = _columns_of(path, leaves)
     within = {each: reduce(lambda of, key: of.struct.field(key), each[1:], pl.col(each[0])) for each in leaves}
-    return frame.select(column.alias(names[each]) for each, column in within.items())
+    return _in_texts(frame.select(column.alias(names[each]) for each, column in within.items()))
+
+
+def _in_texts(frame: pl.DataFrame) -> pl.DataFrame:
+    of_texts = pl.selectors.categorical() | pl.selectors.enum() | pl.selectors.binary()
+    return frame.with_columns(of_texts.cast(pl.String, strict=False))
 
 
 def _leaves(keys: tuple[str, ...], dtype: pl.DataType) -> Iterator[tuple[str, ...]]:

@@ -10,8 +10,7 @@ import polars as pl
 
 from navbound import _core
 from navbound.errors import FormatError
-from navbound.read.checks.statements import name_parts
-from navbound.read.columns.naming import declare
+from navbound.read.columns.naming import declare, name_parts
 from navbound.read.tables import dates
 
 if TYPE_CHECKING:

@@ -12,6 +12,7 @@ from navbound.errors import UNSEEN, FormatError
 from navbound.read import own_positions
 from navbound.read.beside.altitude_unit import HIGH_M, LIKE, AltitudeUnit, note
 from navbound.read.beside.further import Further, Speeds
+from navbound.read.beside.hemispheres import Hemispheres
 from navbound.read.beside.no_speed import NoSpeeds
 from navbound.read.beside.speed_unit import SPEED, SpeedUnit
 from navbound.read.checks import levels, stated, statements
@@ -20,7 +21,7 @@ from navbound.read.checks.rejections import Kind, Tally
 from navbound.read.checks.repeats import EARLIER, IDENTICAL, UNJUDGED, Repeats, expected, median_rows, separate, usual_rows
 from navbound.read.columns.assign import is_header, kinds_within
 from navbound.read.columns.column import POSITION, Assignment, Column, is_transponder
-from navbound.read.columns.naming import declare
+from navbound.read.columns.naming import declare, plain_form
 from navbound.read.columns.timed import position_time
 from navbound.read.quantities import POSITION_TIME, QUANTITY, UNITS
 from navbound.read.tables.cells import (
@@ -59,6 +60,8 @@ FIELDS, OPTIONAL, DATED, REQUIRED, REPEATED, LEVELS, COMPARED, SPEEDS = range(0,
 """Where a reason stands among the others of its file; the number of the column is added to that of an optional one."""
 
 
+_OF_NAVIGATION = (("anp", None), ("actual_navigation_performance", None))
+"""Names of what flight management systems show in nautical miles, where a table states no unit."""
 _LEAST_EPU_M = 1.0
 """A smaller radius that holds 95 % is one of a phase solution in metres, or one in nautical miles. Provenance: ours. [m]"""
 
@@ -68,7 +71,7 @@ SHOWN = 20
 
 def texts(frame: pl.DataFrame) -> tuple[set[str], set[str]]:
     """Columns of text of which something is written in the first rows, and nothing there is a number; and those in which nothing is."""
-    head = frame.head(SHOWN)
+    head = frame.head(SHOWN).with_columns(pl.selectors.by_dtype(pl.Null).cast(pl.String))
     strings = [name for name, dtype in head.schema.items() if dtype == pl.String and name != LINE]
     written = {name: head[name].str.strip_chars().set(head[name].str.strip_chars().str.contains(MISSING), None) for name in strings}
     in_words = {name for name, each in written.items() if each.count() and each.cast(pl.Float64, strict=False).count() == 0}
@@ -103,6 +106,7 @@ class Values:
         self._dated = position_time(mapping.unused)
         self._no_speeds = NoSpeeds()
         self._further, self._speeds = Further(path, mapping, self._no_speeds), Speeds(mapping.absent)
+        self._hemispheres = Hemispheres(path, mapping)
         self._nowhere, self.whole_seconds = Nowhere(), True
         self._callsigns = Callsigns()
         self._speed = SpeedUnit(mapping.speed) if mapping.speed else None
@@ -117,7 +121,8 @@ class Values:
         self._n_ground: dict[str, int] = {}
         self._n_dated = self._n_undated = 0
         self._n_heights = self._n_feet = self._n_metres = 0
-        self._transponder, self._least_epu_m = is_transponder(mapping), math.inf
+        self._transponder, self._least_epu_m, self._least_anp_m = is_transponder(mapping), math.inf, math.inf
+        self._without_unit = {name for name in mapping.accuracies if plain_form(name) in _OF_NAVIGATION}
         altitude = mapping.columns.get("altitude_m")
         of_name = altitude is not None and altitude.unit == "ft" and not altitude.unit_stated and not self._transponder
         self._altitude = AltitudeUnit(mapping.columns) if of_name else None
@@ -163,6 +168,7 @@ class Values:
         # A column of states may hold objects of them, too.
         may_hold = [name for name in (*self._mapping.unused, *(name for name, _ in self._mapping.statements)) if name in frame.columns]
         within = within_objects(frame.select(may_hold))
+        self._hemispheres.see(part, frame, within)
         part = self._with_speed(
             self._further.see(part, frame, within, (self.tally, SPEEDS)).with_columns(*_reasons(frame, against), *self._raw(frame)), frame
         )
@@ -204,6 +210,8 @@ class Values:
             numbers_of = {name: raw.cast(pl.Float64, strict=False).abs().fill_nan(None) for name, raw in known.items()}
             self._count_uncompared(frame, numbers_of)
             values = [(each * lengths[name]).alias(name) for name, each in numbers_of.items()]
+            for name in self._without_unit & numbers_of.keys():
+                self._least_anp_m = min(self._least_anp_m, smallest(numbers_of[name]))
             if values:
                 part = part.with_columns(pl.DataFrame(values).max_horizontal().alias(quantity))
         return part
@@ -301,6 +309,11 @@ class Values:
             if column is not None and column.unit == "ft" and not column.unit_stated and not self._transponder:
                 how = declare(f"{name}={column.name}:m")
                 self.notes.append(f"{self._path.name}: “{column.name}” states no unit and is read in feet; if it is in metres, {how}")
+        if self._least_anp_m < _LEAST_EPU_M:
+            self.position_doubts += [
+                f"{self._path.name}: “{name}” states no unit and would be compared in metres; {_small_epu(name)}"
+                for name in sorted(self._without_unit)
+            ]
         column = columns.get("epu_m")
         if column is None or column.unit != "m" or column.unit_stated:
             return
@@ -309,9 +322,7 @@ class Values:
         if self._least_epu_m >= _LEAST_EPU_M:
             self.notes.append(f"{words}; if it is in nautical miles, {how}")
         else:
-            self.position_doubts.append(
-                f"{words}; as small as it is it may be in nautical miles: {how}, or :m; nothing is shown until then"
-            )
+            self.position_doubts.append(f"{words}; {_small_epu(column.name)}")
 
     def _look_like_feet(self) -> None:
         columns = self._mapping.columns
@@ -392,7 +403,7 @@ class Values:
         self._understand_altitude()
         self._look_like_feet()
         self._units_of_names()
-        self.position_doubts += self._further.doubts()
+        self.position_doubts += [*self._further.doubts(), *self._hemispheres.doubts()]
         self.notes += self._further.notes()
         if self._dated is not None:
             try:
@@ -605,6 +616,11 @@ def _reasons(frame: pl.DataFrame, against: list[tuple[str, pl.Series]]) -> list[
         )
         bad, example = both[_BAD], both[_EXAMPLE]
     return [bad.alias(_BAD), example.alias(_EXAMPLE)]
+
+
+def _small_epu(name: str) -> str:
+    how = declare(f"epu_m={name}:nm")
+    return f"as small as it is it may be in nautical miles: {how}, or :m; nothing is shown until then"
 
 
 def _written(part: pl.DataFrame) -> pl.DataFrame:
