@@ -200,3 +200,29 @@ def test_what_is_seen_elsewhere_is_no_age(tmp_path: Path) -> None:
     reading = read(path)
     assert reading.unread == ["seen"]
     assert "position_time_ns" not in reading.epochs.columns
+
+
+@pytest.mark.parametrize("form", ["json", "csv"])
+@pytest.mark.parametrize("listed", ["mlat", "tisb"])
+def test_an_accuracy_that_others_gave_is_none_of_the_aircraft(tmp_path: Path, listed: str, form: str) -> None:
+    rows = [
+        {"now": 1_700_000_000 + k, "hex": "3c6444", "lat": 48 + k * 1e-4, "lon": 2.5, "type": "adsb_icao", "nac_p": 9, "seen_pos": 0.1}
+        | {listed: ["gs", "nac_p"]}
+        for k in range(60)
+    ]
+    if form == "json":
+        (tmp_path / "a.json").write_text("\n".join(json.dumps(row) for row in rows))
+    else:
+        head = ",".join(rows[0])
+        lines = [",".join(f'"{value}"' if isinstance(value, list) else str(value) for value in row.values()) for row in rows]
+        (tmp_path / "a.csv").write_text("\n".join([head, *lines]) + "\n")
+    verdict = navbound.analyze(tmp_path / f"a.{form}", spec="RNP 0.3").summary.verdict
+    assert (verdict.id, verdict.n_reason) == ("nothing_judged", {"no_covariance": 60})
+
+
+def test_an_accuracy_that_others_gave_is_none_of_a_trace(tmp_path: Path) -> None:
+    details = {"type": "adsb_icao", "nac_p": 9, "tisb": ["nac_p"]}
+    rows = [[float(k), 48 + k * 1e-3, 2.5, 3000, 216.0, 0.0, 0, 0, details, "adsb_icao"] for k in range(60)]
+    (tmp_path / "trace_full_3c6444.json").write_text(json.dumps({"icao": "3c6444", "timestamp": 1_700_000_000.0, "trace": rows}))
+    verdict = navbound.analyze(tmp_path / "trace_full_3c6444.json", spec="RNP 0.3").summary.verdict
+    assert verdict.n_reason == {"no_covariance": 60}

@@ -79,6 +79,12 @@ HEARD = _words("hex seen")
 newer. [s]"""
 
 _OF_PLACE = ("lat", "lon")
+CLAIMS = ("nac_p", "nic", "rc", "sil")
+"""Names in the lists of accuracies and integrities."""
+
+
+_OF_READSB = ("mlat", "tisb")
+"""Lists of readsb."""
 
 
 def names_position(values: object) -> bool:
@@ -88,9 +94,18 @@ def names_position(values: object) -> bool:
     return not isinstance(values, list) or any(name in values for name in _OF_PLACE)
 
 
+def is_of_others(claim: str, beside: Mapping[str, object]) -> bool:
+    """Whether a list of values that others gave has an accuracy or an integrity of an aircraft."""
+    lists = (beside.get(name) for name in _OF_READSB)
+    return any(isinstance(values, list) and claim in values for values in lists)
+
+
 def without_lists(frame: pl.DataFrame, names: Iterable[str]) -> pl.DataFrame:
-    """The named columns with whether a list of each row has the position; what is no list stays as it is."""
-    replaced = []
+    """The named columns with whether a list of each row has the position; what is no list stays as it is.
+
+    An accuracy or an integrity that a list has is none of the aircraft's: the row does not state it.
+    """
+    replaced, of_others = list[pl.Expr](), {name: list[pl.Expr]() for name in CLAIMS if name in frame.columns}
     for name in names:
         dtype = frame.schema[name]
         if isinstance(dtype, pl.List) and not dtype.inner.is_nested():
@@ -98,11 +113,20 @@ def without_lists(frame: pl.DataFrame, names: Iterable[str]) -> pl.DataFrame:
             has = pl.any_horizontal(listed.list.contains(pl.lit(each)) for each in _OF_PLACE)
             # A row without a list names nothing.
             replaced.append(has.fill_null(value=False).alias(name))
+            for claim, listing in of_others.items():
+                listing.append(listed.list.contains(pl.lit(claim)).fill_null(value=False))
         elif dtype == pl.String:
-            text = pl.col(name)
-            has = text.str.contains(r"""["'\s\[,](lat|lon)["'\s\],]""").cast(pl.String)
-            replaced.append(pl.when(text.str.strip_chars().str.starts_with("[")).then(has).otherwise(text).alias(name))
-    return frame.with_columns(replaced)
+            text, is_list = pl.col(name), pl.col(name).str.strip_chars().str.starts_with("[").fill_null(value=False)
+            has = text.str.contains(_listing("|".join(_OF_PLACE))).cast(pl.String)
+            replaced.append(pl.when(is_list).then(has).otherwise(text).alias(name))
+            for claim, listing in of_others.items():
+                listing.append(is_list & text.str.contains(_listing(claim)).fill_null(value=False))
+    own = [pl.when(~pl.any_horizontal(listing)).then(pl.col(claim)).alias(claim) for claim, listing in of_others.items() if listing]
+    return frame.with_columns(*replaced, *own)
+
+
+def _listing(words: str) -> str:
+    return rf"""["'\s\[,]({words})["'\s\],]"""
 
 
 class OfTrace:
@@ -120,7 +144,7 @@ class OfTrace:
         """The word of the next row."""
         if details is not None:
             self._kind = details.get("type", self._kind)
-            self._computed = next((name for name in ("mlat", "tisb") if names_position(details.get(name))), "")
+            self._computed = next((name for name in _OF_READSB if names_position(details.get(name))), "")
             self._beside = stated
         elif stated is not None and stated != self._beside:
             self._computed = ""

@@ -165,7 +165,12 @@ pub(super) fn position(bytes: &[u8], claims: &Claims, statements: &Statements) -
         return Err(Refused::Undated);
     }
     let time = time::from_unix((unix_s * 1e3).round() as i64 * (NS_PER_S / 1e3) as i64);
-    let claim = Claim { nic: line.nic, nac_p: line.nac_p, sil: line.sil };
+    let listed = |name: &str| line.mlat.iter().chain(&line.tisb).any(|each| each == name);
+    // What others gave is no claim of the aircraft.
+    let [nic, nac_p, sil] =
+        [("nic", line.nic), ("nac_p", line.nac_p), ("sil", line.sil)].map(|(name, value)| value.filter(|_| !listed(name)));
+    let rc = line.rc.filter(|_| !listed("rc"));
+    let claim = Claim { nic, nac_p, sil };
     let known = Position {
         lat_rad: Some(lat_deg.to_radians()),
         lon_rad: Some(lon_deg.to_radians()),
@@ -176,8 +181,7 @@ pub(super) fn position(bytes: &[u8], claims: &Claims, statements: &Statements) -
         ..Position::new(track, time)
     };
     // A position that others computed or repeat is none that the aircraft claims anything of.
-    let of_others = line.mlat.iter().chain(&line.tisb).any(|name| matches!(name.as_str(), "lat" | "lon"));
-    if of_others || !line.kind.as_deref().is_some_and(|kind| kind.starts_with("adsb_")) {
+    if listed("lat") || listed("lon") || !line.kind.as_deref().is_some_and(|kind| kind.starts_with("adsb_")) {
         return Ok(known.without(Reason::ForeignPosition));
     }
     if of_the_future {
@@ -186,7 +190,7 @@ pub(super) fn position(bytes: &[u8], claims: &Claims, statements: &Statements) -
     if statements::heard(bytes, &KEYS, known.lat_rad.zip(known.lon_rad), statements, &mut PassedOver::default()) {
         return Ok(Position { status: Status::InvalidInput, reason: Some(Reason::Reported), ..known });
     }
-    Ok(known.bounded(claims.bounds_beside(claim, line.rc)))
+    Ok(known.bounded(claims.bounds_beside(claim, rc)))
 }
 
 #[cfg(test)]
@@ -226,6 +230,9 @@ mod tests {
             assert_eq!(reason(r#""lat":48.5,"#, &format!(r#""lat":48.5,{of_others}"#)), Ok(Some(Reason::ForeignPosition)));
         }
         assert_eq!(reason(r#""lat":48.5,"#, r#""lat":48.5,"mlat":["gs","track"],"tisb":[],"#), Ok(None));
+        // An accuracy that others gave is none that the aircraft claims.
+        let of_others = stated(&WHOLE.replace(r#""nic":8"#, r#""mlat":["nac_p"],"tisb":["nic"],"nic":8"#)).unwrap();
+        assert_eq!((of_others.covariance_m2, of_others.hpl_m), (None, None));
         assert_eq!(reason(r#""type":"adsb_icao","#, ""), Ok(Some(Reason::ForeignPosition)));
         assert_eq!(reason(r#""lat":48.5,"#, ""), Err(Refused::NoPosition));
         assert_eq!(reason("4CA123", "<b>"), Err(Refused::TrackName));

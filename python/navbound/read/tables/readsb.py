@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from navbound.errors import FormatError
-from navbound.read.own_positions import OfTrace
+from navbound.read.own_positions import CLAIMS, OfTrace, is_of_others
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -45,9 +45,7 @@ def columns_of(source: Source, data: dict[str, Any]) -> dict[str, list[Any]]:
         "callsign": [d.get("flight") for d in details],
         "position_source": [sources.of(row[9] if len(row) > 9 else None, each) for row, each in zip(trace, stated, strict=True)],
         "nav_qnh": [d.get("nav_qnh") for d in details],
-        "nac_p": [d.get("nac_p") for d in details],
-        "nic": [d.get("nic") for d in details],
-        "rc": [d.get("rc") for d in details],
+        **{claim: [None if is_of_others(claim, d) else d.get(claim) for d in details] for claim in CLAIMS},
     }
 
 
