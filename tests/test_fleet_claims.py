@@ -15,7 +15,8 @@ from navbound import _core, live
 from navbound.errors import FormatError
 from navbound.live import journal, zones
 from navbound.live.sinks import tables
-from navbound.read.checks import statements
+from navbound.read.statements.kinds import kind_of
+from navbound.read.statements.texts import stated_in
 
 UNIX_S = 1_731_000_000.0
 LINE: dict[str, Any] = {
@@ -145,9 +146,9 @@ def test_a_table_that_is_none_says_where(tmp_path: Path, text: str, sentence: st
 )
 def test_whose_a_position_is_says_a_table_as_a_live_source_does(tmp_path: Path, source: str) -> None:
     epochs = tables.epochs(session(tmp_path, [{"type": source}]))
-    kind = statements.kind_of("type")
+    kind = kind_of("type")
     assert kind is not None
-    stated = statements.stated(kind, pl.Series([source]))
+    stated = stated_in(kind, pl.Series([source]))
     assert (stated.against[0] is not None) == (epochs["reason_id"][0] == "foreign_position")
     assert stated.unknown == []
 

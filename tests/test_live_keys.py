@@ -13,7 +13,8 @@ from navbound import _core, live
 from navbound.live import statements
 from navbound.live.settings import Settings
 from navbound.live.sinks import metrics, tables
-from navbound.read.checks.statements import BARE_LENGTHS, kind_of, speaks_of_accuracy, speaks_of_integrity, speaks_of_level
+from navbound.read.statements.kinds import kind_of
+from navbound.read.statements.names import BARE_LENGTHS, speaks_of_accuracy, speaks_of_integrity, speaks_of_level
 
 if TYPE_CHECKING:
     from pathlib import Path

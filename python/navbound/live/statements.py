@@ -6,15 +6,10 @@ import math
 from collections.abc import Iterable, Mapping
 
 from navbound import _core
-from navbound.read.checks.statements import (
-    BARE_LENGTHS,
-    BEFORE,
-    KINDS,
-    kind_of,
-    speaks_of_integrity,
-)
 from navbound.read.columns.place_names import INERTIAL_APART_M, PLACES_APART_M, place_words
 from navbound.read.quantities import POSITION_TIME_NAMES, QUANTITIES, QUANTITY, STATED_QUANTITIES, UNITS
+from navbound.read.statements.kinds import BEFORE, KINDS, kind_of
+from navbound.read.statements.names import BARE_LENGTHS, speaks_of_integrity
 from navbound.table.columns import COVARIANCE
 
 _JUDGED = frozenset({"sigma_e_m", "sigma_n_m", "epu_m", "rc_m", "nac_p", "nic", "nuc_p", "pic", "hpl_m", "status", *COVARIANCE})

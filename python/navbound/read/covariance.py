@@ -10,7 +10,7 @@ import polars as pl
 
 from navbound.errors import InputError
 from navbound.read.checks.stated import CONTAINMENT, WORSE, worse_than_covariance
-from navbound.read.checks.statements import speaks_of_accuracy, speaks_of_level
+from navbound.read.statements.names import speaks_of_accuracy, speaks_of_level
 from navbound.table.columns import COVARIANCE, HORIZONTAL
 from navbound.units import METRES_PER_NM
 

@@ -12,18 +12,16 @@ from typing import TYPE_CHECKING
 
 import polars as pl
 
+from navbound.read.columns.naming import words
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
-
-
-def _words(text: str) -> frozenset[str]:
-    return frozenset(text.split())
 
 
 OWN_BEGINS = "adsb_"
 """Sources of readsb that begin so are the aircraft's own, whatever follows; the decoder of live lines has the same rule."""
 
-COMPUTED = _words(
+COMPUTED = words(
     "mlat multilateration multilaterated wam wide_area_multilateration lam tdoa "
     "tisb tis_b tisb_icao tisb_trackfile tisb_other adsr adsr_icao adsr_other ads_r rebroadcast "
     "radar psr ssr mssr primary_radar secondary_radar surveillance_radar primary_surveillance_radar secondary_surveillance_radar "
@@ -32,49 +30,49 @@ COMPUTED = _words(
 )
 """Words of positions that others computed or repeat, or that nothing measured."""
 
-FOREIGN = COMPUTED | _words("adsc ads_c mode_s modes mode_ac mode_a_c")
+FOREIGN = COMPUTED | words("adsc ads_c mode_s modes mode_ac mode_a_c")
 """Words of sources whose positions are none that the aircraft claims a category of."""
 
 NAMED_COMPUTED = rf"(?:^|[^a-z0-9])(?:multilat[a-z]*|mlat[0-9]+|{'|'.join(sorted(COMPUTED))})(?:[^a-z0-9]|$)"
 """In lower case with `_` for blanks and hyphens: a name of several words, one of which is such a word, as `ads_b/mlat`."""
 
-OWN = _words(
+OWN = words(
     "adsb ads_b adsb_icao adsb_icao_nt adsb_other adsb_1090 ads_b_1090 ads_b_1090es 1090es adsb_uat ads_b_uat uat flarm ais "
     "gps gnss glonass galileo beidou sbas waas egnos gbas dgps dgnss rtk rtk_fixed rtk_float ppp gps_ins gnss_ins"
 )
 """Words of positions of the aircraft's own receiver."""
 
-OF_POSITION = _words(
+OF_POSITION = words(
     "position_source pos_source position_src pos_src position_source_type position_source_id position_source_name position_origin "
     "pos_origin source_of_position location_source fix_source position_method positioning_method positioning_source positioning_type"
 )
 """Columns that say nothing but how the position came: a word that nobody knows is none of the aircraft's own."""
-OPENSKY_FOREIGN, OPENSKY_OWN = _words("1 2"), _words("0 3")
+OPENSKY_FOREIGN, OPENSKY_OWN = words("1 2"), words("0 3")
 """Numbers of OpenSky in them: 1 ASTERIX, 2 MLAT; 0 ADS-B, 3 FLARM."""
 
-OF_ANYTHING = _words("type source source_type src data_source track_source surveillance_source surveillance_type")
+OF_ANYTHING = words("type source source_type src data_source track_source surveillance_source surveillance_type")
 """Columns that may say that, or what kind of aircraft, of message or of receiver: a word that is not known is named."""
 
-OF_NAVIGATION = _words("nav_source navigation_source nav_src navigation_sensor nav_sensor gps_source gnss_source")
+OF_NAVIGATION = words("nav_source navigation_source nav_src navigation_sensor nav_sensor gps_source gnss_source")
 """Columns that say what keeps the position."""
-INERTIAL = _words("irs ins iru inertial imu irs_only ins_only inertial_only dr")
+INERTIAL = words("irs ins iru inertial imu irs_only ins_only inertial_only dr")
 """Words in them of inertial sensors alone."""
 
-LISTS = _words(
+LISTS = words(
     "mlat is_mlat by_mlat from_mlat mlat_position position_mlat multilateration multilaterated is_multilaterated "
     "tisb is_tisb by_tisb from_tisb tisb_position position_tisb"
 )
 """Columns that say whether others computed a position: a truth value, or the names of the values that are theirs."""
 
-UPDATE_TYPE = _words("update_type updatetype")
-UPDATE_FOREIGN, UPDATE_OWN = _words("p o z m d x v"), _words("a s")
+UPDATE_TYPE = words("update_type updatetype")
+UPDATE_FOREIGN, UPDATE_OWN = words("p o z m d x v"), words("a s")
 """Letters of FlightAware in them: projected, oceanic, radar, multilateration, datalink, surface, virtual; ADS-B from ground or space.
 Provenance: standard, from knowledge of the interface."""
 
-READSB = _words("hex seen_pos")
+READSB = words("hex seen_pos")
 """A table with both is one of readsb's aircraft: its `type` is how the position came, and a row without one claims nothing."""
 
-HEARD = _words("hex seen")
+HEARD = words("hex seen")
 """A table with both is one of dump1090's or readsb's aircraft: `seen` is how long ago the aircraft was heard last, and no position of it is
 newer. [s]"""
 

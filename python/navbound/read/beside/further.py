@@ -14,10 +14,10 @@ from navbound.errors import FormatError
 from navbound.read.beside.places import OtherPlaces
 from navbound.read.checks.plausible import Limits
 from navbound.read.checks.repeats import SAME_PLACE_M
-from navbound.read.checks.statements import STALE_AFTER_S
 from navbound.read.columns.column import NO_COLUMN, POSITION
 from navbound.read.columns.naming import declare
 from navbound.read.quantities import UNITS
+from navbound.read.statements.kinds import STALE_AFTER_S
 from navbound.read.tables.cells import largest, no_field, numbers
 from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, understand

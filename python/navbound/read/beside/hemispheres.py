@@ -13,8 +13,8 @@ import polars as pl
 
 from navbound.read.columns.column import NO_COLUMN
 from navbound.read.columns.hemispheres import STATED, of_name
-from navbound.read.columns.naming import declare, name_parts, plain_form
-from navbound.read.columns.place_names import AXES, OF_HEMISPHERE, Axis, axes_of, is_no_vehicle, sides, words
+from navbound.read.columns.naming import declare, name_parts, plain_form, words
+from navbound.read.columns.place_names import AXES, OF_HEMISPHERE, Axis, axes_of, is_no_vehicle, sides
 from navbound.read.tables.cells import in_one_text
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, status
-from navbound.read.checks.statements import STALE_AFTER_S
 from navbound.read.quantities import POSITION_TIME
+from navbound.read.statements.kinds import STALE_AFTER_S
 from navbound.table.columns import COVARIANCE
 from navbound.words.plurals import agreeing, counted
 

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from navbound import _core, status
-from navbound.read.checks.statements import NO_ALERT
+from navbound.read.statements.kinds import NO_ALERT
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from navbound.read.checks.statements import Effect, Stated
+    from navbound.read.statements.kinds import Effect
+    from navbound.read.statements.texts import Stated
 
 ERROR, ALERT = "stated_error_m", "stated_alert"
 """The largest lateral or horizontal error that a row states [m]; the word of an alert that it states, null where it states none."""

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError, InputError
 from navbound.read.beside.places import find
-from navbound.read.checks.statements import ACCURACY_WORDS, AGE, NUC, READSB_TYPE, kind_of
 from navbound.read.columns import hemispheres
 from navbound.read.columns.column import NO_COLUMN, OF_TRANSPONDER, POSITION, Assignment, Column
 from navbound.read.columns.lacking import refuse_twins, require
@@ -36,12 +35,13 @@ from navbound.read.quantities import (
     WRITTEN,
     Quantity,
 )
+from navbound.read.statements.kinds import ACCURACY_WORDS, AGE, NUC, READSB_TYPE, kind_of
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Mapping, Sequence
     from pathlib import Path
 
-    from navbound.read.checks.statements import Kind
+    from navbound.read.statements.kinds import Kind
 
 
 def assign(

@@ -7,15 +7,15 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from navbound.read.beside.places import Place
-from navbound.read.checks.statements import speaks_of_accuracy, speaks_of_integrity, speaks_of_level
 from navbound.read.columns.naming import length_in, plain_form
 from navbound.read.own_positions import READSB
 from navbound.read.quantities import POSITION_TIME_NAMES, QUANTITIES, TRANSPONDER
+from navbound.read.statements.names import speaks_of_accuracy, speaks_of_integrity, speaks_of_level
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from navbound.read.checks.statements import Kind
+    from navbound.read.statements.kinds import Kind
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError
 from navbound.read.columns.column import NO_COLUMN, Column
-from navbound.read.columns.naming import LONGEST_NAME, name_parts, parted_form, plain_form
-from navbound.read.columns.place_names import AXES, Axis, axes_of, whose, words
+from navbound.read.columns.naming import LONGEST_NAME, name_parts, parted_form, plain_form, words
+from navbound.read.columns.place_names import AXES, Axis, axes_of, whose
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

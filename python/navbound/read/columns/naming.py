@@ -12,6 +12,12 @@ from navbound.read.quantities import UNITS, Quantity
 if TYPE_CHECKING:
     from pathlib import Path
 
+
+def words(text: str) -> frozenset[str]:
+    """Words apart at blanks."""
+    return frozenset(text.split())
+
+
 LONGEST_NAME = 80
 """Longer names are compared with nothing: likeness takes quadratic time. [1]"""
 _ALL_UNITS = frozenset(unit for units in UNITS.values() for unit in units if unit not in {"", "1"})

@@ -7,15 +7,10 @@ import unicodedata
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-from navbound.read.columns.naming import name_parts
+from navbound.read.columns.naming import name_parts, words
 
 Axis = Literal["est_lat_rad", "est_lon_rad"]
 AXES: tuple[Axis, Axis] = ("est_lat_rad", "est_lon_rad")
-
-
-def words(text: str) -> frozenset[str]:
-    """Words apart at blanks."""
-    return frozenset(text.split())
 
 
 NO_TRUTH = words("station base receiver frame system datum ellipsoid waypoint wpt runway thr threshold line path")

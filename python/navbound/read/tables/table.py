@@ -14,8 +14,8 @@ import polars as pl
 
 from navbound.errors import FormatError
 from navbound.read.checks.rejections import Rejections
-from navbound.read.checks.statements import alarms
 from navbound.read.columns.naming import declare
+from navbound.read.statements.texts import alarms
 from navbound.read.tables import readsb
 from navbound.read.tables.cells import DEEPEST, leaves, series
 from navbound.read.tables.memory import require_free

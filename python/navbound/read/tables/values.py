@@ -15,7 +15,7 @@ from navbound.read.beside.further import Further, Speeds
 from navbound.read.beside.hemispheres import Hemispheres
 from navbound.read.beside.no_speed import NoSpeeds
 from navbound.read.beside.speed_unit import SPEED, SpeedUnit
-from navbound.read.checks import levels, stated, statements
+from navbound.read.checks import levels, stated
 from navbound.read.checks.places import NO_PLACE, Nowhere
 from navbound.read.checks.rejections import Kind, Tally
 from navbound.read.checks.repeats import EARLIER, IDENTICAL, UNJUDGED, Repeats, expected, median_rows, separate, usual_rows
@@ -24,6 +24,8 @@ from navbound.read.columns.column import POSITION, Assignment, Column, is_transp
 from navbound.read.columns.naming import declare, plain_form
 from navbound.read.columns.timed import position_time
 from navbound.read.quantities import POSITION_TIME, QUANTITY, UNITS
+from navbound.read.statements.kinds import AGES, BY_OTHERS, STALE_AFTER_S
+from navbound.read.statements.texts import WORDS_SHOWN, Stated, alarming, alarms, stated_in
 from navbound.read.tables.cells import (
     MISSING,
     in_hemisphere,
@@ -45,7 +47,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from navbound.read.checks.statements import Effect, Stated
+    from navbound.read.statements.kinds import Effect
 
 _BAD, _EXAMPLE = "__bad", "__example"
 _RAW = "__raw "
@@ -135,7 +137,7 @@ class Values:
         FormatError
             A column that holds neither numbers nor text.
         """
-        frame = own_positions.without_lists(frame, [name for name, kind in self._mapping.statements if kind is statements.BY_OTHERS])
+        frame = own_positions.without_lists(frame, [name for name, kind in self._mapping.statements if kind is BY_OTHERS])
         self._check_kinds(frame)
         frame = self._without_names_and_units(frame)
         out, against, reasons = {LINE: frame[LINE]}, list[tuple[str, pl.Series]](), dict[str, pl.Series]()
@@ -219,7 +221,7 @@ class Values:
     def _with_age(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
         """The age that a row states of its position, where no column states the time of the position."""
         stated = [(name, kind) for name, kind in self._mapping.statements if not no_field(frame.schema[name])]
-        ages = {name: unit_s for name, kind in stated for of, unit_s in statements.AGES if kind is of}
+        ages = {name: unit_s for name, kind in stated for of, unit_s in AGES if kind is of}
         if self._dated is not None or not ages:
             return part
         stated_s = [(frame[name].cast(pl.Float64, strict=False).fill_nan(None) * unit_s).alias(name) for name, unit_s in ages.items()]
@@ -344,18 +346,18 @@ class Values:
             known = pl.col("status").str.to_lowercase().is_in(list(status.STATUSES)).fill_null(value=False)
             unknown = part.filter(~known)["status"]
             self._n_unknown += unknown.len()
-            words = unknown.fill_null("empty").replace("", "empty").unique(maintain_order=True).head(statements.SHOWN)
+            words = unknown.fill_null("empty").replace("", "empty").unique(maintain_order=True).head(WORDS_SHOWN)
             self._unknown_statuses |= dict.fromkeys(words)
         return status.recorded(part)
 
     def _statements(self, frame: pl.DataFrame) -> list[tuple[str, Effect, Stated]]:
         """What columns of validity and of alerts state."""
-        stated = [(name, kind.effect, statements.stated(kind, frame[name])) for name, kind in self._mapping.statements]
+        stated = [(name, kind.effect, stated_in(kind, frame[name])) for name, kind in self._mapping.statements]
         kinds = frame.schema
         unused = [name for name in self._mapping.unused if kinds.get(name) in (pl.String, pl.List(pl.String))]
         # Words in a list are one text of several.
         texts = frame.select(pl.col(name).list.join("; ") if kinds[name] == pl.List(pl.String) else pl.col(name) for name in unused)
-        stated += [(name, "alert", statements.alarms(texts[name])) for name in statements.alarming(texts)]
+        stated += [(name, "alert", alarms(texts[name])) for name in alarming(texts)]
         read = {column.name for column in self._mapping.columns.values()}
         for name, _, each in stated:
             if name in read:
@@ -366,11 +368,9 @@ class Values:
     def _within(self, within: pl.DataFrame) -> list[tuple[str, Effect, Stated]]:
         """What objects in fields state, key by key: no good word of one takes back an alarm of another."""
         kinds = kinds_within(name for name, dtype in within.schema.items() if not no_field(dtype))
-        stated: list[tuple[str, Effect, Stated]] = [
-            (name, kind.effect, statements.stated(kind, within[name])) for name, kind in kinds.items()
-        ]
+        stated: list[tuple[str, Effect, Stated]] = [(name, kind.effect, stated_in(kind, within[name])) for name, kind in kinds.items()]
         texts = within.select(name for name, dtype in within.schema.items() if dtype == pl.String and name not in kinds)
-        stated += [(name, "alert", statements.alarms(texts[name])) for name in statements.alarming(texts)]
+        stated += [(name, "alert", alarms(texts[name])) for name in alarming(texts)]
         for name, _, each in stated:
             self._unknown.setdefault(name, {}).update(dict.fromkeys(word for word in each.unknown if word != "empty"))
         return stated
@@ -378,7 +378,7 @@ class Values:
     @property
     def unread(self) -> list[str]:
         """Columns, or words of columns, that speak of integrity by their name and are not understood."""
-        words = {name: ", ".join(list(each)[: statements.SHOWN]) for name, each in self._unknown.items() if each}
+        words = {name: ", ".join(list(each)[:WORDS_SHOWN]) for name, each in self._unknown.items() if each}
         return [*(f"{name} ({each})" for name, each in words.items()), *self._mapping.unread]
 
     def understand(self) -> None:
@@ -393,7 +393,7 @@ class Values:
         if self._n_unknown:
             self.notes.append(
                 f"{name}: {counted(self._n_unknown, 'epoch has', 'epochs have')} a status that is none of {', '.join(status.STATUSES)} "
-                f"({', '.join(list(self._unknown_statuses)[: statements.SHOWN])}); {agreeing(self._n_unknown, 'it is', 'they are')} "
+                f"({', '.join(list(self._unknown_statuses)[:WORDS_SHOWN])}); {agreeing(self._n_unknown, 'it is', 'they are')} "
                 "not judged"
             )
         self.notes += self._callsigns.words(name)
@@ -521,8 +521,8 @@ class Values:
         # One of the two clocks is wrong, and nothing says which.
         ahead_s = (valid - out["time_ns"]).cast(pl.Float64) * 1e-9
         of_row = pl.format("{} s later than its row", ahead_s.round(1))
-        wrong = pl.select(pl.when(ahead_s > statements.STALE_AFTER_S).then(of_row)).to_series()
-        return stated.with_statements(out, [(name, "invalid", statements.Stated(wrong, []))]) if wrong.count() else out
+        wrong = pl.select(pl.when(ahead_s > STALE_AFTER_S).then(of_row)).to_series()
+        return stated.with_statements(out, [(name, "invalid", Stated(wrong, []))]) if wrong.count() else out
 
     def doubts(self) -> list[str]:
         """Why nothing can be shown of the positions, after the last rows."""

@@ -9,7 +9,7 @@ import polars as pl
 from navbound.read.checks.neighbours import Neighbours
 from navbound.read.checks.plausible import Limits
 from navbound.read.checks.stated import ALERT, CONTAINMENT, ERROR, WORSE
-from navbound.read.checks.statements import SHOWN
+from navbound.read.statements.texts import WORDS_SHOWN
 from navbound.status import USABLE
 
 if TYPE_CHECKING:
@@ -73,9 +73,9 @@ class Doubts:
         counts = margins.select(usable.alias("_usable"), **each, any=beyond | alert | worse | uncontained)
         self.n_stated_beyond += int(counts["beyond"].sum())
         self.n_stated_alert += int(counts["alert"].sum())
-        if counts["alert"].any() and len(self.stated_alerts) < SHOWN:
-            words = margins.filter(counts["alert"])[ALERT].unique(maintain_order=True).head(SHOWN)
-            self.stated_alerts = dict.fromkeys([*self.stated_alerts, *words][:SHOWN])
+        if counts["alert"].any() and len(self.stated_alerts) < WORDS_SHOWN:
+            words = margins.filter(counts["alert"])[ALERT].unique(maintain_order=True).head(WORDS_SHOWN)
+            self.stated_alerts = dict.fromkeys([*self.stated_alerts, *words][:WORDS_SHOWN])
         self.n_stated_worse += int(counts["worse"].sum())
         self.n_stated_uncontained += int(counts["uncontained"].sum())
         self.n_stated_against += int(counts["any"].sum())

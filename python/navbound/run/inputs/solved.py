@@ -17,8 +17,8 @@ from navbound.read import formats
 from navbound.read.checks.places import east_north_m, header_against
 from navbound.read.checks.refusals import of_navigation, of_observations, skipped_words, without_epochs
 from navbound.read.checks.repeats import left_out, separate
-from navbound.read.checks.statements import STALE_AFTER_S
 from navbound.read.columns.place_names import PLACES_APART_M
+from navbound.read.statements.kinds import STALE_AFTER_S
 from navbound.read.tables.epochs import Reading
 from navbound.records.material import LEFT_OUT
 from navbound.records.run import Rejection

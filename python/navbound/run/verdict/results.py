@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import _core
-from navbound.read.checks.statements import speaks_of_accuracy, speaks_of_level
 from navbound.read.columns.naming import declare
+from navbound.read.statements.names import speaks_of_accuracy, speaks_of_level
 from navbound.run.verdict.numbers import duration, length, level, share
 from navbound.run.verdict.procedure import beside_procedure_words, incomplete_words
 from navbound.run.verdict.rule import FEW_EPOCHS, has_approaches
