@@ -91,6 +91,10 @@ class Rejections:
         )
 
 
+OPTIONAL, DATED, REQUIRED, REPEATED, LEVELS, COMPARED, SPEEDS = range(100_000, 800_000, 100_000)
+"""Where a reason stands among the others of its file; the number of the column is added to that of an optional one."""
+
+
 @dataclass
 class Tally:
     """The same while a file comes in pieces.

@@ -19,9 +19,10 @@ from navbound.read.pieces.order import Pieces
 from navbound.read.pieces.parquet import batches, is_parquet
 from navbound.read.source import Source, digested
 from navbound.read.tables.dates import of_day
+from navbound.read.tables.order import Late, one_row_a_time
 from navbound.read.tables.stated_units import HEAD_BYTES, require_same_in_remarks
 from navbound.read.tables.table import LINE, Layout, layout_of, rows_of
-from navbound.read.tables.values import SHOWN, Late, Values, one_row_a_time, texts
+from navbound.read.tables.values import SHOWN, Values, texts
 from navbound.storage.frames import Spool
 
 if TYPE_CHECKING:

@@ -2,38 +2,34 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import polars as pl
 
-from navbound import status
 from navbound.errors import UNSEEN, FormatError
 from navbound.read import own_positions
-from navbound.read.beside.altitude_unit import HIGH_M, LIKE, AltitudeUnit, note
 from navbound.read.beside.further import Further, Speeds
 from navbound.read.beside.hemispheres import Hemispheres
 from navbound.read.beside.no_speed import NoSpeeds
 from navbound.read.beside.speed_unit import SPEED, SpeedUnit
+from navbound.read.beside.unstated_units import UnstatedUnits
 from navbound.read.checks import levels, stated
 from navbound.read.checks.places import NO_PLACE, Nowhere
-from navbound.read.checks.rejections import Kind, Tally
-from navbound.read.checks.repeats import EARLIER, IDENTICAL, UNJUDGED, Repeats, expected, median_rows, separate, usual_rows
-from navbound.read.columns.assign import is_header, kinds_within
-from navbound.read.columns.column import POSITION, Assignment, Column, is_transponder
-from navbound.read.columns.naming import declare, plain_form
+from navbound.read.checks.rejections import COMPARED, DATED, LEVELS, OPTIONAL, REQUIRED, SPEEDS, Kind, Tally
+from navbound.read.checks.repeats import expected, median_rows, usual_rows
+from navbound.read.columns.assign import is_header
+from navbound.read.columns.column import POSITION, Assignment, Column
 from navbound.read.columns.timed import position_time
 from navbound.read.quantities import POSITION_TIME, QUANTITY, UNITS
 from navbound.read.statements.kinds import AGES, BY_OTHERS, STALE_AFTER_S
-from navbound.read.statements.texts import WORDS_SHOWN, Stated, alarming, alarms, stated_in
+from navbound.read.statements.rows import Stating
+from navbound.read.statements.texts import Stated
 from navbound.read.tables.cells import (
     MISSING,
     in_hemisphere,
-    largest,
     no_field,
     numbers,
     on_ground,
-    smallest,
     within_objects,
     words_of_ground,
 )
@@ -41,13 +37,12 @@ from navbound.read.tables.names import Callsigns, one_writing
 from navbound.read.tables.stated_units import is_row_of_units, require_same
 from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, shown, understand, units
-from navbound.words.plurals import agreeing, counted
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from navbound.read.statements.kinds import Effect
 
 _BAD, _EXAMPLE = "__bad", "__example"
 _RAW = "__raw "
@@ -58,14 +53,6 @@ _AGE, _OLDEST_S = "__age_s", 1e6
 _AHEAD_NS = 1_000_000_000
 """How much later than its row a position may be said to be: both may be rounded."""
 
-FIELDS, OPTIONAL, DATED, REQUIRED, REPEATED, LEVELS, COMPARED, SPEEDS = range(0, 800_000, 100_000)
-"""Where a reason stands among the others of its file; the number of the column is added to that of an optional one."""
-
-
-_OF_NAVIGATION = (("anp", None), ("actual_navigation_performance", None))
-"""Names of what flight management systems show in nautical miles, where a table states no unit."""
-_LEAST_EPU_M = 1.0
-"""A smaller radius that holds 95 % is one of a phase solution in metres, or one in nautical miles. Provenance: ours. [m]"""
 
 SHOWN = 20
 """Rows that show whether a column holds words: as many as the shortest piece of a file has. Provenance: ours."""
@@ -115,19 +102,11 @@ class Values:
         self._facts, self._facts_dated = list[TimeFacts](), list[TimeFacts]()
         self._dtypes: dict[str, pl.DataType] = {}
         self._times_of: dict[int, int] = {}
-        self._n_unknown = 0
-        self._unknown_statuses: dict[str, None] = {}
-        self._unknown: dict[str, dict[str, None]] = {}
-        self._largest = dict.fromkeys(POSITION, 0.0)
+        self._stating, self._units = Stating(mapping), UnstatedUnits(path, mapping)
         self._unit = self._unit_dated = ""
         self._n_ground: dict[str, int] = {}
         self._n_dated = self._n_undated = 0
-        self._n_heights = self._n_feet = self._n_metres = 0
-        self._transponder, self._least_epu_m, self._least_anp_m = is_transponder(mapping), math.inf, math.inf
-        self._without_unit = {name for name in mapping.accuracies if plain_form(name) in _OF_NAVIGATION}
-        altitude = mapping.columns.get("altitude_m")
-        of_name = altitude is not None and altitude.unit == "ft" and not altitude.unit_stated and not self._transponder
-        self._altitude = AltitudeUnit(mapping.columns) if of_name else None
+        self._altitude = self._units.altitude
 
     def take(self, frame: pl.DataFrame) -> pl.DataFrame:
         """Columns in SI of some rows, with their times as they are written and the reasons against them.
@@ -174,19 +153,14 @@ class Values:
         part = self._with_speed(
             self._further.see(part, frame, within, (self.tally, SPEEDS)).with_columns(*_reasons(frame, against), *self._raw(frame)), frame
         )
-        for name in POSITION:
-            if name in part.columns:
-                self._largest[name] = max(self._largest[name], largest(part[name]))
-        self._see_heights(part)
-        if "epu_m" in part.columns:
-            self._least_epu_m = min(self._least_epu_m, smallest(part["epu_m"]))
+        self._units.see(part)
         if set(POSITION) <= set(self._required):
             self._nowhere.see(part)
         if tuple(self._required) == POSITION:
-            rows = stated.of_satellites(self._listed_statuses(stated.against_itself(part)))
+            part = stated.against_itself(part)
         else:
-            rows = stated.of_satellites(self._listed_statuses(stated.with_faulty_cells(stated.worse_than_level(part), reasons, without)))
-        return stated.with_statements(rows, [*self._statements(frame), *self._within(within)])
+            part = stated.with_faulty_cells(stated.worse_than_level(part), reasons, without)
+        return stated.with_statements(stated.of_satellites(self._stating.with_statuses(part)), self._stating.of(frame, within))
 
     def _numbers(self, frame: pl.DataFrame, column: Column) -> tuple[pl.Series, pl.Series]:
         """A column in SI, and why its values are none; a speed that is none is not stated, which is no fault of the row."""
@@ -212,8 +186,7 @@ class Values:
             numbers_of = {name: raw.cast(pl.Float64, strict=False).abs().fill_nan(None) for name, raw in known.items()}
             self._count_uncompared(frame, numbers_of)
             values = [(each * lengths[name]).alias(name) for name, each in numbers_of.items()]
-            for name in self._without_unit & numbers_of.keys():
-                self._least_anp_m = min(self._least_anp_m, smallest(numbers_of[name]))
+            self._units.see_accuracies(numbers_of)
             if values:
                 part = part.with_columns(pl.DataFrame(values).max_horizontal().alias(quantity))
         return part
@@ -286,100 +259,10 @@ class Values:
         self._dtypes |= {name: values.dtype for name, values in columns.items()}
         return [values.alias(_RAW + name) for name, values in columns.items()]
 
-    def _see_heights(self, part: pl.DataFrame) -> None:
-        """Count heights that are a pressure altitude times feet in a metre, or the other way round; keep what decides a unit."""
-        if self._altitude is not None:
-            self._altitude.see(part)
-        if not {"est_h_m", "altitude_m"} <= set(part.columns):
-            return
-        high = part.filter(pl.min_horizontal(pl.col("est_h_m").abs(), pl.col("altitude_m").abs()) > HIGH_M)
-        ratio = pl.col("est_h_m") / pl.col("altitude_m")
-        feet = 1.0 / UNITS["m"]["ft"]
-        self._n_heights += high.height
-        self._n_feet += high.filter((ratio / feet - 1.0).abs() <= LIKE).height
-        self._n_metres += high.filter((ratio * feet - 1.0).abs() <= LIKE).height
-
-    def _units_of_names(self) -> None:
-        """Units that are those of a name and that nobody states: a height of ADS-B is in feet, an uncertainty of a flight display in NM."""
-        columns = self._mapping.columns
-        altitude = columns.get("altitude_m")
-        decided = "" if altitude is None else altitude.because or (self._altitude.words if self._altitude is not None else "")
-        if altitude is not None and decided:
-            self.notes.append(note(self._path, altitude, decided))
-        for name in ("est_h_m",) if decided else ("est_h_m", "altitude_m"):
-            column = columns.get(name)
-            if column is not None and column.unit == "ft" and not column.unit_stated and not self._transponder:
-                how = declare(f"{name}={column.name}:m")
-                self.notes.append(f"{self._path.name}: “{column.name}” states no unit and is read in feet; if it is in metres, {how}")
-        if self._least_anp_m < _LEAST_EPU_M:
-            self.position_doubts += [
-                f"{self._path.name}: “{name}” states no unit and would be compared in metres; {_small_epu(name)}"
-                for name in sorted(self._without_unit)
-            ]
-        column = columns.get("epu_m")
-        if column is None or column.unit != "m" or column.unit_stated:
-            return
-        words = f"{self._path.name}: “{column.name}” states no unit and is read in metres"
-        how = declare(f"epu_m={column.name}:nm")
-        if self._least_epu_m >= _LEAST_EPU_M:
-            self.notes.append(f"{words}; if it is in nautical miles, {how}")
-        else:
-            self.position_doubts.append(f"{words}; {_small_epu(column.name)}")
-
-    def _look_like_feet(self) -> None:
-        columns = self._mapping.columns
-        if self._altitude is not None and self._altitude.words:
-            # They were counted as they were read, in feet.
-            return
-        for n, name, other in ((self._n_feet, "est_h_m", "altitude_m"), (self._n_metres, "altitude_m", "est_h_m")):
-            if 2 * n > self._n_heights:
-                of, beside = columns[name], columns[other]
-                self.notes.append(
-                    f"{self._path.name}: “{of.name}” was read as {of.unit}, and is 3.28 times “{beside.name}” ({beside.unit}) at {n} of "
-                    f"{counted(self._n_heights, 'row')}: one of them is in another unit than it is read in; "
-                    f"{declare(f'{name}={of.name}:ft')}"
-                )
-
-    def _listed_statuses(self, part: pl.DataFrame) -> pl.DataFrame:
-        """What a recording says of its own epochs, in words of the list; words that are none of it are counted."""
-        if "status" in part.columns:
-            known = pl.col("status").str.to_lowercase().is_in(list(status.STATUSES)).fill_null(value=False)
-            unknown = part.filter(~known)["status"]
-            self._n_unknown += unknown.len()
-            words = unknown.fill_null("empty").replace("", "empty").unique(maintain_order=True).head(WORDS_SHOWN)
-            self._unknown_statuses |= dict.fromkeys(words)
-        return status.recorded(part)
-
-    def _statements(self, frame: pl.DataFrame) -> list[tuple[str, Effect, Stated]]:
-        """What columns of validity and of alerts state."""
-        stated = [(name, kind.effect, stated_in(kind, frame[name])) for name, kind in self._mapping.statements]
-        kinds = frame.schema
-        unused = [name for name in self._mapping.unused if kinds.get(name) in (pl.String, pl.List(pl.String))]
-        # Words in a list are one text of several.
-        texts = frame.select(pl.col(name).list.join("; ") if kinds[name] == pl.List(pl.String) else pl.col(name) for name in unused)
-        stated += [(name, "alert", alarms(texts[name])) for name in alarming(texts)]
-        read = {column.name for column in self._mapping.columns.values()}
-        for name, _, each in stated:
-            if name in read:
-                continue
-            self._unknown.setdefault(name, {}).update(dict.fromkeys(each.unknown))
-        return stated
-
-    def _within(self, within: pl.DataFrame) -> list[tuple[str, Effect, Stated]]:
-        """What objects in fields state, key by key: no good word of one takes back an alarm of another."""
-        kinds = kinds_within(name for name, dtype in within.schema.items() if not no_field(dtype))
-        stated: list[tuple[str, Effect, Stated]] = [(name, kind.effect, stated_in(kind, within[name])) for name, kind in kinds.items()]
-        texts = within.select(name for name, dtype in within.schema.items() if dtype == pl.String and name not in kinds)
-        stated += [(name, "alert", alarms(texts[name])) for name in alarming(texts)]
-        for name, _, each in stated:
-            self._unknown.setdefault(name, {}).update(dict.fromkeys(word for word in each.unknown if word != "empty"))
-        return stated
-
     @property
     def unread(self) -> list[str]:
         """Columns, or words of columns, that speak of integrity by their name and are not understood."""
-        words = {name: ", ".join(list(each)[:WORDS_SHOWN]) for name, each in self._unknown.items() if each}
-        return [*(f"{name} ({each})" for name, each in words.items()), *self._mapping.unread]
+        return self._stating.unread
 
     def understand(self) -> None:
         """Decide in which unit the times are written, now that every row was taken.
@@ -390,19 +273,17 @@ class Values:
             Numbers that are no times.
         """
         name = self._path.name
-        if self._n_unknown:
-            self.notes.append(
-                f"{name}: {counted(self._n_unknown, 'epoch has', 'epochs have')} a status that is none of {', '.join(status.STATUSES)} "
-                f"({', '.join(list(self._unknown_statuses)[:WORDS_SHOWN])}); {agreeing(self._n_unknown, 'it is', 'they are')} "
-                "not judged"
-            )
+        self.notes += [f"{name}: {words}" for words in self._stating.statuses()]
         self.notes += self._callsigns.words(name)
         self.notes += [f"{name}: {words_of_ground(column, n)}" for column, n in self._n_ground.items() if n]
-        self._look_like_radians()
+        self._units.radians()
+        self.notes += self._units.notes
         self._unit = self._understood(self._mapping.times, self._facts)
         self._understand_altitude()
-        self._look_like_feet()
-        self._units_of_names()
+        n_notes = len(self._units.notes)
+        self._units.others()
+        self.notes += self._units.notes[n_notes:]
+        self.position_doubts += self._units.doubts
         self.position_doubts += [*self._further.doubts(), *self._hemispheres.doubts()]
         self.notes += self._further.notes()
         if self._dated is not None:
@@ -541,69 +422,6 @@ class Values:
             columns["ground_speed_mps"] = f"{self._speed.name}:{self._speed.unit}"
         return columns | {"time": ", ".join(units(self._mapping.times, self._unit))}
 
-    def _look_like_radians(self) -> None:
-        """Doubt degrees that could be radians: a flight near 0 N 0 E and a wrong unit look alike, so a person must state the unit."""
-        columns = self._mapping.columns
-        if not set(POSITION) <= columns.keys():
-            return
-        lat, lon = (columns[name] for name in POSITION)
-        largest = max(2 * self._largest["est_lat_rad"], self._largest["est_lon_rad"])
-        if lat.unit == "deg" and lon.unit == "deg" and 0 < largest <= math.pi * UNITS["rad"]["deg"]:
-            doubt = (
-                f"{self._path.name}: “{lat.name}” and “{lon.name}” were read as degrees, but all values are small enough to be radians; "
-                f"{declare(f'est_lat_rad={lat.name}:rad', f'est_lon_rad={lon.name}:rad')}, or :deg; "
-                "nothing is shown until the unit is stated"
-            )
-            (self.notes if lat.unit_stated and lon.unit_stated else self.position_doubts).append(doubt)
-        elif lat.unit == lon.unit == "deg" and 0 < self._largest["est_lat_rad"] <= math.pi / 2 * UNITS["rad"]["deg"]:
-            # The longitude is no radian. Near the equator this is a doubt without a cause.
-            self.notes.append(
-                f"{self._path.name}: “{lat.name}” was read as degrees, but all its values are small enough to be radians; if they are, "
-                f"{declare(f'est_lat_rad={lat.name}:rad')}"
-            )
-
-
-class Late:
-    """Rows that stood after a later one of their track, counted in the order of the file."""
-
-    def __init__(self) -> None:
-        self._latest: dict[str, int] = {}
-        self._n, self._first = 0, 0
-
-    def see(self, out: pl.DataFrame) -> None:
-        """The next rows, with ``track``, ``time_ns`` and their line."""
-        before = pl.lit(None, pl.Int64)
-        if self._latest:
-            before = pl.col("track").replace_strict(self._latest, default=None, return_dtype=pl.Int64)
-        late = out.filter(pl.col("time_ns") < pl.max_horizontal(pl.col("time_ns").cum_max().over("track"), before))
-        if not late.is_empty():
-            self._first = self._first or int(late[LINE][0])
-            self._n += late.height
-        for track, time_ns in out.drop_nulls("time_ns").group_by("track").agg(pl.col("time_ns").max()).iter_rows():
-            self._latest[track] = max(time_ns, self._latest.get(track, time_ns))
-
-    def words(self, path: Path, unit: str) -> list[str]:
-        """A note, where there are any."""
-        if not self._n:
-            return []
-        n, first = self._n, f"{unit} {self._first}"
-        return [
-            f"{path.name}: {counted(n, 'row')} stood after a later one of {agreeing(n, 'its', 'their')} track and "
-            f"{agreeing(n, 'was', 'were')} put in order of time (first: {first})"
-        ]
-
-
-def one_row_a_time(out: pl.DataFrame, tally: Tally, *, whole_seconds: bool = False, usual: int = 1) -> Repeats:
-    """Rows in the order of track and time, one an instant; the others are counted."""
-    separated = separate(out.sort("track", "time_ns", maintain_order=True), whole_seconds=whole_seconds, usual=usual)
-    for place, words in enumerate((IDENTICAL, *UNJUDGED, EARLIER)):
-        repeated = separated.kinds.get(words)
-        if repeated is not None:
-            track, time_ns, line = repeated.sort(LINE).select("track", "time_ns", LINE).row(0)
-            reason = f"time repeated within a track{words}"
-            tally.add(REPEATED + place, reason, repeated.height, line, f"track {track}, time_ns {time_ns}", kind="quiet")
-    return separated
-
 
 def _reasons(frame: pl.DataFrame, against: list[tuple[str, pl.Series]]) -> list[pl.Series]:
     """The first reason against each row, and the text at fault; null where there is none."""
@@ -616,11 +434,6 @@ def _reasons(frame: pl.DataFrame, against: list[tuple[str, pl.Series]]) -> list[
         )
         bad, example = both[_BAD], both[_EXAMPLE]
     return [bad.alias(_BAD), example.alias(_EXAMPLE)]
-
-
-def _small_epu(name: str) -> str:
-    how = declare(f"epu_m={name}:nm")
-    return f"as small as it is it may be in nautical miles: {how}, or :m; nothing is shown until then"
 
 
 def _written(part: pl.DataFrame) -> pl.DataFrame:
