@@ -5,15 +5,15 @@ use crate::codec::{Damaged, Reader, Writer};
 use crate::counters::Refused;
 use crate::position::{Position, Shown, TrackId};
 use navbound_core::quantity::{Reason, Status};
-use navbound_formats::receiver::position::{Dated, Decoder, Ends, Item, Kind, Message, OfDay, State};
+use navbound_formats::receiver::position::{Dated, Datum, Decoder, Ends, Heard, Item, Kind, Message, OfDay, State};
 
 /// Most messages of an unfinished epoch: one of a kind, and four of each that talkers share. Provenance: ours.
 const MOST_MESSAGES: u32 = 16;
 
-/// A report, or why there is none; nothing for a date, or for an accuracy alone.
+/// A report, or why there is none; nothing for a date or a datum.
 pub(super) fn decoded(item: Item, track: TrackId) -> Option<Decoded> {
     match item {
-        Item::Dated(_) => None,
+        Item::Dated(_) | Item::Datum(_) => None,
         Item::Unpaired(_) => Some(Err(Refused::AccuracyAlone)),
         Item::Malformed(_) => Some(Err(Refused::ShortMessage)),
         Item::Position(position) => {
@@ -36,7 +36,7 @@ pub(super) fn decoded(item: Item, track: TrackId) -> Option<Decoded> {
 }
 
 pub(super) fn write(decoder: &Decoder, to: &mut Writer) {
-    let (state, dated) = decoder.state();
+    let (state, Heard { dated, datum }) = decoder.state();
     to.option(state.key, Writer::i64);
     to.u32(state.messages.len() as u32);
     for message in &state.messages {
@@ -48,12 +48,15 @@ pub(super) fn write(decoder: &Decoder, to: &mut Writer) {
     to.u32(state.last);
     to.option(state.finished, Writer::i64);
     to.flag(state.waits);
-    to.option(dated, |to, Dated { year, month, day, of_day: OfDay(of_day_ns) }| {
+    to.option(*dated, |to, Dated { year, month, day, of_day: OfDay(of_day_ns) }| {
         to.i64(i64::from(year));
         to.u8(month);
         to.u8(day);
         to.i64(of_day_ns);
     });
+    for stated in [&datum.of_epoch, &datum.newest] {
+        to.option(stated.as_deref(), |to, stated| to.bytes(stated.as_bytes()));
+    }
 }
 
 pub(super) fn read(kind: Kind, from: &mut Reader<'_>) -> Result<Decoder, Damaged> {
@@ -69,5 +72,31 @@ pub(super) fn read(kind: Kind, from: &mut Reader<'_>) -> Result<Decoder, Damaged
         let (year, month, day) = (i32::try_from(from.i64()?).map_err(|_| Damaged("not a year"))?, from.u8()?, from.u8()?);
         Ok(Dated { year, month, day, of_day: OfDay(from.i64()?) })
     })?;
-    Ok(Decoder::with_state(kind, Ends::WithLast, state, dated))
+    let mut stated = || {
+        from.option(|from| from.bytes().and_then(|text| core::str::from_utf8(text).map(str::to_owned).map_err(|_| Damaged("not a text"))))
+    };
+    let datum = Datum { of_epoch: stated()?, newest: stated()? };
+    Ok(Decoder::with_state(kind, Ends::WithLast, state, Heard { dated, datum }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use navbound_formats::stream::Frame;
+
+    #[test]
+    fn what_sentences_said_beyond_their_epoch_is_written_down() {
+        let mut decoder = Decoder::new(Kind::Nmea, Ends::WithLast);
+        for body in ["GPRMC,120000.00,A,4900.0,N,00230.0,E,1.0,0.0,221126,,,A", "GPDTM,NAD27,,0.1,N,0.0,E,0.0,W84", "GPDTM,W84,,,,,,,W84"] {
+            decoder.take(&Frame::Nmea(body.as_bytes()), 0, &mut Vec::new());
+            let mut to = Writer::default();
+            write(&decoder, &mut to);
+            let mut from = Reader(&to.0);
+            let again = read(Kind::Nmea, &mut from).unwrap();
+            from.finish().unwrap();
+            assert_eq!(again.state(), decoder.state(), "{body}");
+        }
+        let heard = decoder.state().1;
+        assert!(heard.dated.is_some() && heard.datum.of_epoch.is_some() && heard.datum.newest.is_none());
+    }
 }

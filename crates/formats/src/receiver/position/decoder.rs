@@ -1,7 +1,7 @@
 //! Frames of a receiver to positions, one after the other.
 
 use super::epoch::{Ends, Epoch, Message, State, of_kind};
-use super::nmea::Dated;
+use super::nmea::{Dated, Heard};
 use super::{Kind, Position, nmea, novatel, sbf, ubx};
 use crate::stream::Frame;
 
@@ -21,6 +21,8 @@ pub enum Item {
     Position(Box<Position>),
     /// A date of sentences, which dates those around it.
     Dated(Dated),
+    /// What a sentence said against the datum of the positions around it, or nothing where that is WGS-84.
+    Datum(Option<String>),
     /// A message that is none.
     Malformed(Malformed),
     /// Number of a message with an accuracy beside which no position stands.
@@ -32,7 +34,7 @@ pub enum Item {
 pub struct Decoder {
     kind: Kind,
     epoch: Epoch,
-    dated: Option<Dated>,
+    heard: Heard,
 }
 
 /// What a message does to an epoch.
@@ -49,6 +51,8 @@ pub(super) enum Step {
     Date { key: i64, kind: u32, dated: Option<Dated>, kept: bool },
     /// It has no time of its own and belongs to the unfinished epoch; of several the one with the largest number counts.
     Beside { kind: u32, number: fn(&[u8]) -> f64 },
+    /// It states a datum that holds until the next one, and what that says against positions.
+    Datum(Option<String>),
     /// It is an epoch of its own.
     Whole(Box<Position>),
     /// It is none.
@@ -58,17 +62,17 @@ pub(super) enum Step {
 impl Decoder {
     /// A decoder that has seen nothing yet.
     pub fn new(kind: Kind, ends: Ends) -> Self {
-        Self { kind, epoch: Epoch { state: State::default(), ends }, dated: None }
+        Self { kind, epoch: Epoch { state: State::default(), ends }, heard: Heard::default() }
     }
 
     /// The decoder that had this state: see [`Self::state`].
-    pub fn with_state(kind: Kind, ends: Ends, state: State, dated: Option<Dated>) -> Self {
-        Self { kind, epoch: Epoch { state, ends }, dated }
+    pub fn with_state(kind: Kind, ends: Ends, state: State, heard: Heard) -> Self {
+        Self { kind, epoch: Epoch { state, ends }, heard }
     }
 
-    /// What it keeps between two frames: the unfinished epoch, and the last date of sentences.
-    pub fn state(&self) -> (&State, Option<Dated>) {
-        (&self.epoch.state, self.dated)
+    /// What it keeps between two frames: the unfinished epoch, and what sentences said that holds beyond theirs.
+    pub fn state(&self) -> (&State, &Heard) {
+        (&self.epoch.state, &self.heard)
     }
 
     /// The next frame, with its number in the stream, or 0 where nobody counts. Those of other receivers are passed over.
@@ -102,6 +106,10 @@ impl Decoder {
                 let message = Message { kind, record, body: body.to_vec() };
                 self.epoch.put_beside(message, |new, kept| number(&new.body) > number(&kept.body));
             }
+            Step::Datum(against) => {
+                self.heard.datum.hear(against.clone());
+                out.push(Item::Datum(against));
+            }
             Step::End { key, kind } => {
                 self.begin(key, kind, out);
                 if self.epoch.ends == Ends::WithLast {
@@ -117,7 +125,7 @@ impl Decoder {
                     self.epoch.pass(key, kind);
                 }
                 // A date of another time ends no epoch: some receivers write it between a position and its accuracy, a moment later.
-                self.dated = dated.or(self.dated);
+                self.heard.dated = dated.or(self.heard.dated);
                 out.extend(dated.map(Item::Dated));
                 self.end_at_last(out);
             }
@@ -143,13 +151,17 @@ impl Decoder {
         }
     }
 
-    fn emit(&self, messages: &[Message], out: &mut Vec<Item>) {
+    fn emit(&mut self, messages: &[Message], out: &mut Vec<Item>) {
+        if messages.is_empty() {
+            return;
+        }
         let position = match self.kind {
             Kind::Ubx => ubx::position(messages),
             Kind::Sbf => sbf::position(messages),
-            Kind::Nmea => nmea::position(messages),
+            Kind::Nmea => nmea::position(messages, self.heard.datum.of_epoch.as_deref()),
             Kind::Novatel => None,
         };
+        self.heard.datum.next_epoch();
         let Some(mut position) = position else {
             if self.kind == Kind::Nmea {
                 out.extend(nmea::accuracy_alone(messages).map(Item::Unpaired));
@@ -157,7 +169,7 @@ impl Decoder {
             return;
         };
         // The reader of a whole file knows the dates behind a sentence too.
-        if let (Ends::WithLast, Some(dated)) = (self.epoch.ends, self.dated) {
+        if let (Ends::WithLast, Some(dated)) = (self.epoch.ends, self.heard.dated) {
             position.date(dated);
         }
         out.push(Item::Position(Box::new(position.checked())));

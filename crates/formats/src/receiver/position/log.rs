@@ -3,7 +3,7 @@
 use super::decoder::{Decoder, Item};
 use super::epoch::Ends;
 use super::nmea::Dated;
-use super::{Kind, Note, Position, Reason};
+use super::{Absent, Kind, Note, Position, Reason};
 use crate::stream::{Among, Frame, Frames, Place};
 use navbound_core::quantity::GpsTime;
 use std::collections::BTreeMap;
@@ -87,6 +87,21 @@ pub fn read(bytes: &[u8], kind: Kind) -> Log {
 struct Sentences {
     waiting: Vec<Position>,
     dates: Vec<(u64, Dated)>,
+    /// Whether a datum was stated.
+    datum: bool,
+}
+
+impl Sentences {
+    /// The first datum that a file states is that of the positions before it, too: nothing else was stated of them.
+    fn datum(&mut self, against: Option<String>) {
+        if let Some(stated) = against.filter(|_| !self.datum) {
+            for position in &mut self.waiting {
+                let kept = position.absent.take_if(|absent| absent.reason != Reason::FewSatellites);
+                position.absent = kept.or_else(|| Some(Absent { reason: Reason::Contradicted, stated: stated.clone() }));
+            }
+        }
+        self.datum = true;
+    }
 }
 
 impl Log {
@@ -95,13 +110,14 @@ impl Log {
             Item::Malformed(malformed) => self.leave_out(DAMAGED, true, malformed.record, malformed.reason.to_owned()),
             Item::Unpaired(record) => self.leave_out(UNPAIRED, false, record, "no GGA of its time".to_owned()),
             Item::Dated(dated) => sentences.dates.push((record, dated)),
+            Item::Datum(against) => sentences.datum(against),
             Item::Position(position) if position.awaits_date() => sentences.waiting.push(*position),
             Item::Position(position) => self.position(*position),
         }
     }
 
     /// Each by the nearest dated sentence before or after it.
-    fn date(&mut self, Sentences { waiting, dates }: Sentences) {
+    fn date(&mut self, Sentences { waiting, dates, .. }: Sentences) {
         let mut place = 0;
         let Some(first) = waiting.first() else { return };
         if dates.is_empty() {

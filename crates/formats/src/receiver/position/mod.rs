@@ -3,6 +3,7 @@
 //! [`Decoder`] takes frames one at a time and gives a [`Position`] when its epoch is complete; a stream and the reader of files ([`log::read`])
 //! use the same. Which words of a receiver mean a measured position stands in [`crate::measured`].
 
+mod datum;
 mod decoder;
 mod epoch;
 pub mod log;
@@ -12,9 +13,10 @@ mod sbf;
 pub mod sign;
 mod ubx;
 
+pub use datum::Datum;
 pub use decoder::{Decoder, Item, Malformed};
 pub use epoch::{Ends, Message, State};
-pub use nmea::Dated;
+pub use nmea::{Dated, Heard};
 
 use crate::stream::Family;
 use core::f64::consts::{FRAC_PI_2, TAU};

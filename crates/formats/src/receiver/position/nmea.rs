@@ -1,12 +1,14 @@
 //! NMEA 0183: GGA with GST (or GBS) and the speed of RMC or VTG of the same time of day, dated by RMC or ZDA.
 //!
-//! What RMC, GLL, GNS, GSA, GBS and DTM of the same epoch say against the position of GGA takes it away. Of several accuracies the worst counts.
+//! What RMC, GLL, GNS, GSA and GBS of the same epoch say against the position of GGA takes it away, and so does the last DTM (see
+//! [`super::datum`]). Of several accuracies the worst counts.
 //!
 //! Source: NMEA 0183 version 4 as receivers' manuals give it; standard. GGA has no date, and its height stands above the geoid.
 
+use super::datum::Datum;
 use super::decoder::Step;
 use super::epoch::{Message, all_of_kind, of_kind};
-use super::{Absent, Fields, Note, OfDay, Position, Reason, no_better, uncorrelated};
+use super::{Absent, Fields, Note, OfDay, Position, Reason, datum, no_better, uncorrelated};
 use crate::measured::{GGA_QUALITIES, GSA_DIMENSIONS, LEAST_SATELLITES, NMEA_MODES};
 use crate::time::{Calendar, Scale, from_calendar, from_unix, to_calendar, to_unix};
 use navbound_core::quantity::{GpsTime, KNOT_MPS};
@@ -60,6 +62,15 @@ pub struct Dated {
     pub of_day: OfDay,
 }
 
+/// What sentences said that holds beyond their epoch.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Heard {
+    /// The last date.
+    pub dated: Option<Dated>,
+    /// The last datum.
+    pub datum: Datum,
+}
+
 pub(super) fn step(body: &[u8], record: u64) -> Step {
     let fields = Sentence(body);
     if body.starts_with(b"PUBX,00,") {
@@ -74,7 +85,7 @@ pub(super) fn step(body: &[u8], record: u64) -> Step {
         return if fields.number(2).is_some() { Step::Beside { kind, number: dimensions } } else { Step::Passed };
     }
     if kind == DTM {
-        return Step::Beside { kind, number: |dtm| datum_offset_m(&Sentence(dtm)).unwrap_or(0.0) };
+        return datum::against(&fields).map_or(Step::Passed, Step::Datum);
     }
     if kind == VTG {
         return if vtg_speed_mps(&fields).is_some() {
@@ -117,23 +128,6 @@ fn vtg_speed_mps(vtg: &Sentence<'_>) -> Option<f64> {
     speed().filter(|speed_mps| measured && *speed_mps >= 0.0)
 }
 
-/// How far the datum of a DTM sentence lies from WGS-84, where it says so.
-fn datum_offset_m(dtm: &Sentence<'_>) -> Option<f64> {
-    let [north, east] = [3, 5].map(|at| dtm.number(at).map(|minutes| minutes / 60.0));
-    Some(EARTH_M * libm::hypot(north?, east?).to_radians())
-}
-
-/// What a DTM sentence says against a position: that it is one in another datum.
-fn other_datum(dtm: &Sentence<'_>) -> Option<String> {
-    let name = dtm.get(1).filter(|name| !name.is_empty())?;
-    let offset_m = datum_offset_m(dtm);
-    let far = offset_m.map_or(!NEAR_DATUMS.contains(&name), |offset_m| offset_m > ONE_PLACE_M);
-    far.then(|| format!("DTM datum {}{}", String::from_utf8_lossy(name), offset_m.map_or_else(String::new, |m| format!(", {m:.0} m away"))))
-}
-
-/// Datums within some metres of WGS-84: itself, WGS-72, PZ-90. Provenance: standard (codes of NMEA 0183, as receivers' manuals give them).
-const NEAR_DATUMS: [&[u8]; 4] = [b"W84", b"W72", b"S85", b"P90"];
-
 /// Quality, satellites, HDOP, altitude, separation; latitude and longitude.
 const GGA_NUMBERS: [usize; 7] = [2, 4, 6, 7, 8, 9, 11];
 
@@ -142,8 +136,8 @@ fn dated((year, month, day): (i32, u8, u8), of_day_ns: i64) -> Option<Dated> {
     from_calendar(noon, Scale::Utc).map(|_| Dated { year, month, day, of_day: OfDay(of_day_ns) })
 }
 
-/// The position of a time of day; a date is still lacking.
-pub(super) fn position(messages: &[Message]) -> Option<Position> {
+/// The position of a time of day; a date is still lacking. `other_datum`: what a DTM said against it.
+pub(super) fn position(messages: &[Message], other_datum: Option<&str>) -> Option<Position> {
     let sentence = |kind| of_kind(messages, kind).map(|message| Sentence(&message.body));
     let (record, gga) = (of_kind(messages, GGA)?.record, sentence(GGA)?);
     let (lat_rad, lon_rad) = (gga.angle(2, [b"N", b"S"]), gga.angle(4, [b"E", b"W"]));
@@ -156,7 +150,7 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
     let expected = worst([of_gbs, of_pubx].into_iter().flatten());
     let enlarged = of_gst.map(|own| no_better(own, expected));
     let biased = || all(GBS).find_map(|gbs| biased_range(&gbs));
-    let against = contradiction(&gga, &sentence).or_else(biased);
+    let against = contradiction(&gga, &sentence, other_datum).or_else(biased);
     let of_rmc = sentence(RMC).and_then(|rmc| rmc.number(7)).filter(|knots| *knots >= 0.0).map(|knots| knots * KNOT_MPS);
     let speed_mps = of_rmc.or_else(|| sentence(VTG).and_then(|vtg| vtg_speed_mps(&vtg)));
     let course = sentence(RMC).and_then(|rmc| rmc.number(8)).or_else(|| sentence(VTG).and_then(|vtg| vtg.number(1)));
@@ -195,7 +189,7 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
 }
 
 /// What the sentences of an epoch say against the position of its GGA.
-fn contradiction<'a>(gga: &Sentence<'a>, sentence: &impl Fn(u32) -> Option<Sentence<'a>>) -> Option<String> {
+fn contradiction<'a>(gga: &Sentence<'a>, sentence: &impl Fn(u32) -> Option<Sentence<'a>>, other_datum: Option<&str>) -> Option<String> {
     let place = |of: &Sentence<'_>, at: usize| of.angle(at, [b"N", b"S"]).zip(of.angle(at + 2, [b"E", b"W"]));
     let own = place(gga, 2);
     // Status, mode, position, navigational status.
@@ -226,7 +220,7 @@ fn contradiction<'a>(gga: &Sentence<'a>, sentence: &impl Fn(u32) -> Option<Sente
     let flat = || sentence(GSA).map(|gsa| dimensions(gsa.0)).filter(|dimensions| *dimensions < GSA_DIMENSIONS);
     let wide = || sentence(GSA).and_then(|gsa| gsa.number(16)).filter(|dilution| *dilution > DILUTION);
     let own_word = || sentence(PUBX).and_then(|pubx| pubx.get(8)).filter(|fix| NO_FIX.contains(fix)).map(String::from_utf8_lossy);
-    let further = stated.or_else(|| sentence(DTM).and_then(|dtm| other_datum(&dtm)));
+    let further = stated.or_else(|| other_datum.map(str::to_owned));
     let further = further.or_else(|| flat().map(|fix| format!("GSA fix {fix}")));
     further.or_else(|| wide().map(|hdop| format!("GSA HDOP {hdop}"))).or_else(|| own_word().map(|fix| format!("PUBX fix {fix}")))
 }
@@ -256,7 +250,7 @@ fn worst(accuracies: impl Iterator<Item = [f64; 6]>) -> Option<[f64; 6]> {
 /// Distance within which two sentences of one time give one place: receivers smooth and extrapolate them differently. Provenance: ours \[m\].
 const ONE_PLACE_M: f64 = 30.0;
 /// Provenance: derived, WGS-84's mean radius rounded upwards; for a distance that decides at tens of metres \[m\].
-const EARTH_M: f64 = 6.372e6;
+pub(super) const EARTH_M: f64 = 6.372e6;
 
 /// Distance of two near places.
 fn apart_m((lat, lon): (f64, f64), (other_lat, other_lon): (f64, f64)) -> f64 {
@@ -310,14 +304,14 @@ fn gps_time(Dated { year, month, day, of_day: OfDay(dated_ns) }: Dated, of_day_n
 }
 
 /// Fields of a sentence, the address first.
-struct Sentence<'a>(&'a [u8]);
+pub(super) struct Sentence<'a>(&'a [u8]);
 
 impl<'a> Sentence<'a> {
-    fn get(&self, at: usize) -> Option<&'a [u8]> {
+    pub(super) fn get(&self, at: usize) -> Option<&'a [u8]> {
         self.0.split(|byte| *byte == b',').nth(at)
     }
 
-    fn number(&self, at: usize) -> Option<f64> {
+    pub(super) fn number(&self, at: usize) -> Option<f64> {
         number(self.get(at)?)
     }
 

@@ -28,8 +28,8 @@ fn items(frames: &[Frame<'_>], kind: Kind, ends: Ends, restored: bool) -> Vec<It
     for frame in frames {
         decoder.take(frame, 0, &mut out);
         if restored {
-            let (state, dated) = decoder.state();
-            decoder = Decoder::with_state(kind, ends, state.clone(), dated);
+            let (state, heard) = decoder.state();
+            decoder = Decoder::with_state(kind, ends, state.clone(), heard.clone());
         }
     }
     decoder.finish(&mut out);
@@ -219,10 +219,18 @@ fn what_another_sentence_says_against_a_position_takes_it_away() {
         // 0.4 and 0.2 minutes of arc.
         ("GPDTM,TOY,,0.4,N,0.2,W,0.0,W84".to_owned(), "DTM datum TOY, 829 m away"),
         ("GPDTM,NAD,,,,,,,W84".to_owned(), "DTM datum NAD"),
+        // A datum that a user defined may be any: its offsets are of the place, and are of no use elsewhere.
+        ("GPDTM,999,,0.001,N,0.0,E,0.0,W84".to_owned(), "DTM datum 999, 2 m away"),
+        ("GPDTM,NAD27,,0.0,N,0.0,E,0.0,W84".to_owned(), "DTM datum NAD27"),
+        ("GPDTM,W84,,0.1,N,0.0,E,0.0,W84".to_owned(), "DTM datum W84, 185 m away"),
+        ("GPDTM,,,0.1,N,,E,0.0,W84".to_owned(), "DTM datum that has no name, 185 m away"),
+        ("GPDTM,W84,,0x1,N,0.0,E,0.0,W84".to_owned(), "DTM datum W84, offset 0x1"),
+        // Turned by 0.554 seconds of arc: 17 m at the equator.
+        ("GPDTM,W72,,,,,,,W84".to_owned(), "DTM datum W72"),
     ] {
         // Before the position, behind it, and behind its accuracy.
         for order in [[ZDA, &other, GGA, GST], [ZDA, GGA, &other, GST], [ZDA, GGA, GST, &other]] {
-            if order[1].contains("GSA") || order[1].contains("DTM") {
+            if order[1].contains("GSA") {
                 continue; // It has no time: before the first sentence of an epoch it is of the one before.
             }
             assert_eq!(reasons(&order), [("contradicted", says.to_owned())], "{order:?}");
@@ -239,8 +247,11 @@ fn what_another_sentence_says_against_a_position_takes_it_away() {
         gsa("GN", 3),
         pubx("D3", "4900.0000"),
         "GPDTM,W84,,0.0,N,0.0,E,0.0,W84".to_owned(),
-        "GPDTM,999,,0.001,N,0.0,E,0.0,W84".to_owned(),
         "GPDTM,P90,,,,,,,W84".to_owned(),
+        // As the receivers of telephones write it, 5 cm off.
+        "GNDTM,P90,,0000.000026,S,00000.000002,E,0.977,W84".to_owned(),
+        // It says nothing.
+        "GPDTM,,,,,,,,".to_owned(),
         // Satellites of the same maker, which are no position.
         "PUBX,03,11,23,-,,,45,010".to_owned(),
     ] {
@@ -459,4 +470,45 @@ fn a_clock_that_was_not_set_before_the_first_fix_is_no_time() {
     // One that was set, and one behind the first date, have their times.
     let log = read_sentences(&[&at("115959.00", "0"), ZDA, GGA, GST, &at("120500.00", "0")]);
     assert_eq!(log.absent.iter().filter(|time| time.is_some()).count(), 2);
+}
+
+/// Reasons of twenty epochs, in each what `more` says at its second, before its position.
+fn with_datums(more: &[(u32, &str)], ends: Ends, restored: bool) -> Vec<Option<String>> {
+    let mut bodies = Vec::new();
+    for second in 0..20 {
+        bodies.extend(more.iter().filter(|(at, _)| *at == second).map(|(_, body)| (*body).to_owned()));
+        bodies.extend([ZDA, GGA, GST].map(|body| body.replace("120000", &format!("1200{second:02}"))));
+    }
+    let frames: Vec<Frame<'_>> = bodies.iter().map(|body| Frame::Nmea(body.as_bytes())).collect();
+    positions(&items(&frames, Kind::Nmea, ends, restored)).iter().map(|p| p.absent.as_ref().map(|absent| absent.stated.clone())).collect()
+}
+
+#[test]
+fn a_datum_holds_until_the_next_one() {
+    let (other, own) = ("GPDTM,NAD27,,0.0,N,0.0,E,0.0,W84", "GPDTM,W84,,0.0,N,0.0,E,0.0,W84");
+    for (ends, restored) in [(Ends::WithNext, false), (Ends::WithLast, false), (Ends::WithLast, true)] {
+        let against = |more: &[(u32, &str)]| with_datums(more, ends, restored).iter().map(Option::is_some).collect::<Vec<_>>();
+        assert_eq!(against(&[(0, other)]), [true; 20], "{ends:?}");
+        // What says nothing ends nothing. Before the sentence of the position it is also of the epoch that no message has ended yet.
+        let spell = against(&[(5, other), (7, "GPDTM,,,,,,,,"), (10, own)]);
+        assert!(spell[5..10].iter().all(|each| *each) && !spell[..4].iter().any(|each| *each), "{ends:?}: {spell:?}");
+        // A stream has finished the epoch before at its last message: an all-clear between two epochs holds from the second on.
+        let cleared = if ends == Ends::WithLast { 11 } else { 10 };
+        assert!(!spell[cleared..].iter().any(|each| *each), "{ends:?}: {spell:?}");
+    }
+}
+
+#[test]
+fn positions_before_the_first_datum_of_a_file_are_in_it() {
+    let second = |k: u32| GGA.replace("120000", &format!("1200{k:02}"));
+    let gga: Vec<String> = (0..6).map(second).collect();
+    let of = |dtm: &str, again: &str| {
+        let log = read_sentences(&[ZDA, &gga[0], &gga[1], &gga[2], dtm, &gga[3], &gga[4], again, &gga[5]]);
+        (log.positions.len(), log.absent.len(), log.n_rows)
+    };
+    let (other, own) = ("GPDTM,NAD27,,0.0,N,0.0,E,0.0,W84", "GPDTM,W84,,0.0,N,0.0,E,0.0,W84");
+    assert_eq!(of(other, "GPTXT,01"), (0, 6, 6));
+    assert_eq!(of(other, own), (1, 5, 6));
+    // What came before another one was stated to be in WGS-84. It has no time, so that it may be of the position before it, too.
+    assert_eq!(of(own, other), (4, 2, 6));
 }
