@@ -88,10 +88,10 @@ pub(super) fn step(body: &[u8], record: u64) -> Step {
         return datum::against(&fields).map_or(Step::Passed, Step::Datum);
     }
     if kind == VTG {
-        return if vtg_speed_mps(&fields).is_some() {
-            Step::Beside { kind, number: |vtg| vtg_speed_mps(&Sentence(vtg)).unwrap_or(0.0) }
-        } else {
-            Step::Passed
+        return match vtg_speed_mps(&fields) {
+            Ok(Some(_)) => Step::Beside { kind, number: |vtg| vtg_speed_mps(&Sentence(vtg)).ok().flatten().unwrap_or(0.0) },
+            Ok(None) => Step::Passed,
+            Err(reason) => Step::Malformed(reason),
         };
     }
     // A receiver without a fix leaves its fields empty.
@@ -121,12 +121,27 @@ fn dimensions(gsa: &[u8]) -> f64 {
     Sentence(gsa).number(2).unwrap_or(0.0)
 }
 
-/// Speed of a VTG sentence, whose mode says that it was measured where it has one.
-fn vtg_speed_mps(vtg: &Sentence<'_>) -> Option<f64> {
+/// Speed of a VTG sentence, whose mode says that it was measured where it has one. Its numbers have the letter of their unit behind them; the
+/// old form has four numbers and no letter: true and magnetic track, knots, kilometres an hour.
+fn vtg_speed_mps(vtg: &Sentence<'_>) -> Result<Option<f64>, &'static str> {
+    let old = vtg.get(5).is_none() && vtg.get(2) != Some(b"T");
+    let [knots, kmh] = if old { [3, 4] } else { [5, 7] }.map(|at| vtg.number(at));
+    let [knots_mps, kmh_mps] = [knots.map(|knots| knots * KNOT_MPS), kmh.map(|kmh| kmh / 3.6)];
+    let lettered = |(at, unit): (usize, &[u8])| vtg.get(at).is_none_or(<[u8]>::is_empty) || vtg.get(at + 1) == Some(unit);
+    let units: [(usize, &[u8]); 4] = [(1, b"T"), (3, b"M"), (5, b"N"), (7, b"K")];
+    // Without a unit both speeds together say what they are.
+    let one =
+        || knots_mps.zip(kmh_mps).is_none_or(|(one, other)| (one - other).abs() <= SAME_SPEED * one.abs().max(other.abs()) + SLOW_MPS);
+    if !(vtg.sound(if old { &[1, 2, 3, 4] } else { &[1, 3, 5, 7] }) && if old { one() } else { units.into_iter().all(lettered) }) {
+        return Err("VTG is in no form that is read");
+    }
     let measured = vtg.get(9).is_none_or(|mode| mode.iter().all(|letter| NMEA_MODES.contains(letter)));
-    let speed = || vtg.number(5).map(|knots| knots * KNOT_MPS).or_else(|| vtg.number(7).map(|kmh| kmh / 3.6));
-    speed().filter(|speed_mps| measured && *speed_mps >= 0.0)
+    Ok(knots_mps.or(kmh_mps).filter(|speed_mps| measured && *speed_mps >= 0.0))
 }
+
+/// Two speeds of one sentence are one within this share and so much more, as they are rounded apart. Provenance: ours \[1, m/s\].
+const SAME_SPEED: f64 = 0.02;
+const SLOW_MPS: f64 = 0.5;
 
 /// Quality, satellites, HDOP, altitude, separation; latitude and longitude.
 const GGA_NUMBERS: [usize; 7] = [2, 4, 6, 7, 8, 9, 11];
@@ -152,7 +167,7 @@ pub(super) fn position(messages: &[Message], other_datum: Option<&str>) -> Optio
     let biased = || all(GBS).find_map(|gbs| biased_range(&gbs));
     let against = contradiction(&gga, &sentence, other_datum).or_else(biased);
     let of_rmc = sentence(RMC).and_then(|rmc| rmc.number(7)).filter(|knots| *knots >= 0.0).map(|knots| knots * KNOT_MPS);
-    let speed_mps = of_rmc.or_else(|| sentence(VTG).and_then(|vtg| vtg_speed_mps(&vtg)));
+    let speed_mps = of_rmc.or_else(|| sentence(VTG).and_then(|vtg| vtg_speed_mps(&vtg).ok()?));
     let course = sentence(RMC).and_then(|rmc| rmc.number(8)).or_else(|| sentence(VTG).and_then(|vtg| vtg.number(1)));
     let track_rad = course.filter(|degrees| (0.0..=360.0).contains(degrees)).map(f64::to_radians);
     let usable = measured && lat_rad.is_some() && lon_rad.is_some();

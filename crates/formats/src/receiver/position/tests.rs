@@ -295,12 +295,33 @@ fn a_speed_that_rmc_does_not_state_is_that_of_vtg() {
         (vec![vtg("90.0,T,,M,,N,185.2,K")], (Some(speed), "VTG")),
         (vec![vtg("90.0,T,,M,100.0,N,185.2,K,N")], (None, "GGA, dated by RMC or ZDA:utc")),
         (vec![vtg(",T,,M,,N,,K,N")], (None, "GGA, dated by RMC or ZDA:utc")),
+        (vec![vtg(",,,,,,,,,N")], (None, "GGA, dated by RMC or ZDA:utc")),
+        // The form without letters.
+        (vec![vtg("90.0,,100.0,185.2")], (Some(speed), "VTG")),
+        (vec![vtg("90.0,92.0,100.0,")], (Some(speed), "VTG")),
+        (vec![vtg("90.0,,,185.2")], (Some(speed), "VTG")),
+        (vec![vtg(",,,")], (None, "GGA, dated by RMC or ZDA:utc")),
     ] {
         let (speed_mps, course, from) = stated(&more.iter().map(String::as_str).collect::<Vec<_>>());
         assert_eq!(from, Some(expected.1), "{more:?}");
         assert_eq!(speed_mps.is_some(), expected.0.is_some(), "{more:?}");
         assert!(speed_mps.zip(expected.0).is_none_or(|(mine, other)| (mine - other).abs() < 1e-9), "{more:?}");
         assert!(expected.1 != "VTG" || course.is_some_and(|course| (course - 90.0).abs() < 1e-9), "{more:?}");
+    }
+}
+
+#[test]
+fn a_speed_over_ground_in_a_form_that_is_not_read_is_counted() {
+    for vtg in [
+        "90.0,,100.0,360.0",       // Knots that are not the kilometres an hour.
+        "90.0,,100.0,185.2,A",     // Neither form.
+        "90.0,T,,M,100.0,K,,",     // Another unit.
+        "90.0,T,,M,1o0.0,N,,K",    // No number.
+        "90.0,T,,M,100.0,,185.2,", // No unit.
+    ] {
+        let log = read_sentences(&[ZDA, GGA, &format!("GPVTG,{vtg}"), GST]);
+        let counted: Vec<_> = log.left_out.iter().map(|each| (each.reason, each.count)).collect();
+        assert_eq!((counted, log.positions[0].ground_speed_mps), (vec![("damaged_message", 1)], None), "{vtg}");
     }
 }
 
