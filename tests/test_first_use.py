@@ -201,17 +201,25 @@ def _rmc(n: int = 3) -> str:
     return "".join(_sentence(f"GPRMC,1230{k:02d}.00,A,4800.{k:04d},N,01100.0000,E,120.0,021.0,130524,,,A") for k in range(n))
 
 
+def _gll(n: int = 3) -> str:
+    return "".join(_sentence(f"GPGLL,4800.{k:04d},N,01100.0000,E,1230{k:02d}.00,A,A") for k in range(n))
+
+
 def test_sentences_of_a_place_alone_say_what_they_lack(tmp_path: Path) -> None:
-    (tmp_path / "a.nmea").write_text(_rmc())
-    with pytest.raises(FormatError, match=r"its 3 RMC sentences state latitude and longitude without height, .*Switch GGA on .*--sigma-m"):
+    (tmp_path / "a.nmea").write_text(_gll())
+    with pytest.raises(FormatError, match=r"its 3 GLL sentences state latitude and longitude without a date.*Switch GGA on .*--sigma-m"):
         read(tmp_path / "a.nmea")
+    undated = (_sentence(f"GPRMC,1230{k:02d}.00,A,4800.{k:04d},N,01100.0000,E,120.0,21.0,,,,A") for k in range(3))
+    (tmp_path / "b.nmea").write_text("".join(undated))
+    with pytest.raises(FormatError, match=r"3 RMC sentences hold a time of day and no date"):
+        read(tmp_path / "b.nmea")
 
 
 def test_live_says_which_sentences_are_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "a.nmea").write_text(_rmc())
+    (tmp_path / "a.nmea").write_text(_gll())
     assert _navbound("live", tmp_path / "a.nmea", "--format", "nmea", "--sigma-m", "5", "--out", tmp_path / "live") == 4
     words = " ".join(capsys.readouterr().out.split())
-    assert "positions are read of GGA, dated by RMC or ZDA; RMC and GLL alone state no height, satellites or accuracy" in words
+    assert "positions are read of GGA, or RMC where no GGA comes, dated by RMC or ZDA" in words
 
 
 def _navbound(*arguments: object) -> int:

@@ -24,7 +24,7 @@ MESSAGES: dict[str, str] = dict(_core.position_logs())
 """Kind of log to the messages that hold its positions."""
 
 _REASONS = {
-    "accuracy_without_position": "accuracy of no position (GST or GBS without a GGA of its time)",
+    "accuracy_without_position": "accuracy of no position (GST or GBS without a position of its time)",
     "contradicted": "position that another statement of its epoch speaks against",
     "damaged_message": "damaged message",
     "damaged_other_message": "damaged message of no position",
@@ -44,6 +44,7 @@ _NOTES = {
     "worse_expected_errors": "the expected errors of GBS are worse than GST beside them; the covariance was enlarged to them",
     "datum": "datum {0} of the receiver is not WGS-84; positions are taken as they stand",
     "expected_errors": "without GST the expected errors of GBS stand for standard deviations",
+    "of_rmc": "no GGA comes, so positions are those of RMC, which states no height, number of satellites, dilution or accuracy of its own",
     "no_separation": "GGA without the separation of the geoid: heights are left out",
     "risk_of_levels": "protection levels of NAV-PL, for a misleading-information risk of {0}e{1} an hour",
     "uncorrelated": "BESTPOS states standard deviations; axes taken as uncorrelated, which the file does not say",
@@ -92,7 +93,8 @@ def read(source: Source, name: str) -> Log:
     left_out = [(_REASONS[reason], *of) for reason, *of in log["left_out"]]
     if log["undated"] is not None:
         n_damaged = sum(count for reason_id, _, count, *_ in log["left_out"] if reason_id in _DAMAGED)
-        raise FormatError(source.path, _undated(log["n_rows"], n_damaged), log["undated"], "date")
+        sentence = "GGA" if b"GGA," in source.content else "RMC"
+        raise FormatError(source.path, _undated(log["n_rows"], n_damaged, sentence), log["undated"], "date")
     if log["n_rows"] == 0:
         what = f"a log of kind {name} without a message that positions are read from ({MESSAGES[name]})"
         raise FormatError(source.path, what + _places_alone(source) + _solvable(source))
@@ -120,7 +122,7 @@ def _notes(source: Source, fields: dict[str, Any]) -> list[str]:
     return [f"{source.path.name}: {note}" for note in notes]
 
 
-_PLACES = re.compile(rb"\$[A-Z]{2}(RMC|GLL),")
+_PLACES = re.compile(rb"\$[A-Z]{2}(GLL|GNS),")
 
 
 def _places_alone(source: Source) -> str:
@@ -130,9 +132,9 @@ def _places_alone(source: Source) -> str:
         return ""
     counts = " and ".join(counted(n, f"{name} sentence") for name, n in sorted(n_of.items()))
     return (
-        f"; its {counts} {agreeing(n_of.total(), 'states', 'state')} latitude and longitude without height, satellites, dilution or "
-        "accuracy. Switch GGA on in the receiver (and GST, which states the accuracy), or write time, lat and lon as a table and state "
-        "the accuracy with --sigma-m"
+        f"; its {counts} {agreeing(n_of.total(), 'states', 'state')} latitude and longitude without a date. Switch GGA on in the receiver "
+        "(and GST, which states the accuracy), and RMC, which has the date, or write time, lat and lon as a table and state the accuracy "
+        "with --sigma-m"
     )
 
 
@@ -145,16 +147,16 @@ def _solvable(source: Source) -> str:
     return f"; it holds raw measurements of {counted(n_epochs, 'epoch')}: with --solve{orbits} positions are solved from them"
 
 
-def _undated(n_positions: int, n_damaged: int) -> str:
-    """GGA holds a time of day only: what is lacking, and what to do."""
+def _undated(n_positions: int, n_damaged: int, sentence: str) -> str:
+    """Sentences that hold a time of day only: what is lacking, and what to do."""
     damaged = (
         f" ({counted(n_damaged, 'sentence is', 'sentences are')} damaged, perhaps those with the date: a wrong checksum refuses one)"
         if n_damaged
         else ""
     )
     return (
-        f"{counted(n_positions, 'GGA sentence holds', 'GGA sentences hold')} a time of day and no date, and no sound RMC or ZDA "
-        f"sentence gives one{damaged}; log RMC or ZDA "
+        f"{counted(n_positions, f'{sentence} sentence holds', f'{sentence} sentences hold')} a time of day and no date, and no sound RMC "
+        f"or ZDA sentence gives one{damaged}; log RMC or ZDA "
         "beside GGA, take out or mend damaged sentences and add one ZDA sentence of the day at the beginning "
         "($GPZDA,hhmmss,dd,mm,yyyy,00,00*checksum), or convert the log to a table with a time"
     )

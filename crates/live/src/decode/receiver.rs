@@ -8,7 +8,7 @@ use navbound_core::quantity::{Reason, Status};
 use navbound_formats::receiver::position::{Dated, Datum, Decoder, Ends, Heard, Item, Kind, Message, OfDay, State};
 
 /// Most messages of an unfinished epoch: one of a kind, and four of each that talkers share. Provenance: ours.
-const MOST_MESSAGES: u32 = 16;
+const MOST_MESSAGES: u32 = 18;
 
 /// A report, or why there is none; nothing for a date or a datum.
 pub(super) fn decoded(item: Item, track: TrackId) -> Option<Decoded> {
@@ -36,7 +36,7 @@ pub(super) fn decoded(item: Item, track: TrackId) -> Option<Decoded> {
 }
 
 pub(super) fn write(decoder: &Decoder, to: &mut Writer) {
-    let (state, Heard { dated, datum }) = decoder.state();
+    let (state, Heard { dated, datum, gga }) = decoder.state();
     to.option(state.key, Writer::i64);
     to.u32(state.messages.len() as u32);
     for message in &state.messages {
@@ -57,6 +57,7 @@ pub(super) fn write(decoder: &Decoder, to: &mut Writer) {
     for stated in [&datum.of_epoch, &datum.newest] {
         to.option(stated.as_deref(), |to, stated| to.bytes(stated.as_bytes()));
     }
+    to.flag(*gga);
 }
 
 pub(super) fn read(kind: Kind, from: &mut Reader<'_>) -> Result<Decoder, Damaged> {
@@ -76,7 +77,7 @@ pub(super) fn read(kind: Kind, from: &mut Reader<'_>) -> Result<Decoder, Damaged
         from.option(|from| from.bytes().and_then(|text| core::str::from_utf8(text).map(str::to_owned).map_err(|_| Damaged("not a text"))))
     };
     let datum = Datum { of_epoch: stated()?, newest: stated()? };
-    Ok(Decoder::with_state(kind, Ends::WithLast, state, Heard { dated, datum }))
+    Ok(Decoder::with_state(kind, Ends::WithLast, state, Heard { dated, datum, gga: from.flag()? }))
 }
 
 #[cfg(test)]
@@ -85,9 +86,11 @@ mod tests {
     use navbound_formats::stream::Frame;
 
     #[test]
-    fn what_sentences_said_beyond_their_epoch_is_written_down() {
+    fn statements_that_hold_beyond_their_epoch_are_written_down() {
         let mut decoder = Decoder::new(Kind::Nmea, Ends::WithLast);
-        for body in ["GPRMC,120000.00,A,4900.0,N,00230.0,E,1.0,0.0,221126,,,A", "GPDTM,NAD27,,0.1,N,0.0,E,0.0,W84", "GPDTM,W84,,,,,,,W84"] {
+        for body in
+            ["GPGGA,,,,,,0", "GPRMC,120000.00,A,4900.0,N,00230.0,E,1.0,0.0,221126,,,A", "GPDTM,NAD27,,,,,,,W84", "GPDTM,W84,,,,,,,W84"]
+        {
             decoder.take(&Frame::Nmea(body.as_bytes()), 0, &mut Vec::new());
             let mut to = Writer::default();
             write(&decoder, &mut to);
@@ -97,6 +100,6 @@ mod tests {
             assert_eq!(again.state(), decoder.state(), "{body}");
         }
         let heard = decoder.state().1;
-        assert!(heard.dated.is_some() && heard.datum.of_epoch.is_some() && heard.datum.newest.is_none());
+        assert!(heard.dated.is_some() && heard.datum.of_epoch.is_some() && heard.datum.newest.is_none() && heard.gga);
     }
 }

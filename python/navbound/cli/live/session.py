@@ -412,7 +412,7 @@ def _unread(format_id: str) -> str:
 
     needs = f"; positions are read of {MESSAGES[format_id]}" if format_id in MESSAGES else ""
     if format_id == "nmea":
-        needs += ", dated by RMC or ZDA; RMC and GLL alone state no height, satellites or accuracy"
+        needs += ", dated by RMC or ZDA"
     elif format_id == "json":
         needs = "; a line is an object with at least v (1), track, time_ns, est_lat_rad, est_lon_rad"
     return f"nothing of the source is read as {format_id}{needs}; if it sends something else, --format states what"

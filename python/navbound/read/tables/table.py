@@ -192,7 +192,7 @@ def layout_of(path: Path, lines: pl.DataFrame, declared: Iterable[str] = ()) -> 
     header = str(lines["text"][0])
     _require_line_ends(path, lines.head(1), pl.col("text"))
     if re.match(_SENTENCE, header):
-        what = f"sentences such as “{header[:40]}”, and none of a position that is read here (GGA, dated by RMC or ZDA)"
+        what = f"sentences such as “{header[:40]}”, and none of a position that is read here (GGA or RMC, dated by RMC or ZDA)"
         raise FormatError(path, what, int(lines[LINE][0]))
     separator = max(_SEPARATORS, key=header.count)
     if separator not in header and len(header.split()) > 2:

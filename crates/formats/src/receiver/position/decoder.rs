@@ -77,10 +77,13 @@ impl Decoder {
 
     /// The next frame, with its number in the stream, or 0 where nobody counts. Those of other receivers are passed over.
     pub fn take(&mut self, frame: &Frame<'_>, record: u64, out: &mut Vec<Item>) {
+        if let (Kind::Nmea, Frame::Nmea(body)) = (self.kind, frame) {
+            self.heard.gga |= nmea::is_gga(body);
+        }
         let (step, body) = match (self.kind, frame) {
             (Kind::Ubx, Frame::Ubx { kind, payload }) => (ubx::step(*kind, payload), *payload),
             (Kind::Sbf, Frame::Sbf { block, body }) => (sbf::step(*block, body), *body),
-            (Kind::Nmea, Frame::Nmea(body)) => (nmea::step(body, record), *body),
+            (Kind::Nmea, Frame::Nmea(body)) => (nmea::step(body, record, self.heard.gga), *body),
             (Kind::Novatel, Frame::NovatelBinary { head, body }) => (novatel::binary(head, body, record), *body),
             (Kind::Novatel, Frame::NovatelText(body)) => (novatel::text(body, record), *body),
             _ => return,
@@ -118,8 +121,11 @@ impl Decoder {
             }
             Step::Date { key, kind, dated, kept } => {
                 let known = self.epoch.state.key == Some(key);
-                if kept && !(known && of_kind(&self.epoch.state.messages, kind).is_some()) {
-                    let complete = self.epoch.put(key, Message { kind, record, body: body.to_vec() });
+                let again = known && of_kind(&self.epoch.state.messages, kind).is_some();
+                if kept && (!again || nmea::places(kind, self.heard.gga)) {
+                    // Of several talkers that place one epoch each is heard.
+                    let message = Message { kind, record, body: body.to_vec() };
+                    let complete = if again { self.epoch.put_again(key, message) } else { self.epoch.put(key, message) };
                     self.emit(&complete, out);
                 } else if known {
                     self.epoch.pass(key, kind);
@@ -158,7 +164,7 @@ impl Decoder {
         let position = match self.kind {
             Kind::Ubx => ubx::position(messages),
             Kind::Sbf => sbf::position(messages),
-            Kind::Nmea => nmea::position(messages, self.heard.datum.of_epoch.as_deref()),
+            Kind::Nmea => nmea::position(messages, &self.heard),
             Kind::Novatel => None,
         };
         self.heard.datum.next_epoch();

@@ -1,9 +1,9 @@
 //! The positions of a whole log, and a count of what did not become one.
 
 use super::decoder::{Decoder, Item};
-use super::epoch::Ends;
-use super::nmea::Dated;
-use super::{Absent, Kind, Note, Position, Reason};
+use super::epoch::{Ends, State};
+use super::nmea::{Dated, Heard};
+use super::{Absent, Kind, Note, Position, Reason, sign};
 use crate::stream::{Among, Frame, Frames, Place};
 use navbound_core::quantity::GpsTime;
 use std::collections::BTreeMap;
@@ -56,7 +56,10 @@ pub struct Log {
 
 /// Read a log, plain (see [`crate::packed::unpack`]).
 pub fn read(bytes: &[u8], kind: Kind) -> Log {
-    let (mut log, mut decoder, mut items) = (Log::default(), Decoder::new(kind, Ends::WithNext), Vec::new());
+    // One GGA anywhere, and RMC states no positions.
+    let gga = sign::position(bytes, Kind::Nmea);
+    let mut decoder = Decoder::with_state(kind, Ends::WithNext, State::default(), Heard { gga, ..Heard::default() });
+    let (mut log, mut items) = (Log::default(), Vec::new());
     let (mut record, mut inside, mut sentences) = (0, 0, Sentences::default());
     for Place { at, end, frame } in Frames::new(bytes, Among::Receivers) {
         let family = frame.as_ref().map_or_else(|damage| damage.family, Frame::family);
@@ -70,7 +73,7 @@ pub fn read(bytes: &[u8], kind: Kind) -> Log {
                 decoder.take(&frame, record, &mut items);
             }
             Err(damage) => {
-                log.damaged(record, format!("byte {at}: {}", damage.reason), kind.stands_at(bytes.get(at..).unwrap_or_default()))
+                log.damaged(record, format!("byte {at}: {}", damage.reason), kind.stands_at(bytes.get(at..).unwrap_or_default(), gga))
             }
         }
         items.drain(..).for_each(|item| log.take(item, record, &mut sentences));
@@ -108,7 +111,7 @@ impl Log {
     fn take(&mut self, item: Item, record: u64, sentences: &mut Sentences) {
         match item {
             Item::Malformed(malformed) => self.leave_out(DAMAGED, true, malformed.record, malformed.reason.to_owned()),
-            Item::Unpaired(record) => self.leave_out(UNPAIRED, false, record, "no GGA of its time".to_owned()),
+            Item::Unpaired(record) => self.leave_out(UNPAIRED, false, record, "no position of its time".to_owned()),
             Item::Dated(dated) => sentences.dates.push((record, dated)),
             Item::Datum(against) => sentences.datum(against),
             Item::Position(position) if position.awaits_date() => sentences.waiting.push(*position),
@@ -120,6 +123,11 @@ impl Log {
     fn date(&mut self, Sentences { waiting, dates, .. }: Sentences) {
         let mut place = 0;
         let Some(first) = waiting.first() else { return };
+        let used = |position: &Position| position.absent.as_ref().is_none_or(|absent| absent.reason == Reason::FewSatellites);
+        if dates.is_empty() && !waiting.iter().any(used) {
+            waiting.into_iter().for_each(|position| self.position(position));
+            return;
+        }
         if dates.is_empty() {
             (self.undated, self.n_rows) = (Some(first.record), self.n_rows + waiting.len());
             return;

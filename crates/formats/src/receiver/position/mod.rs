@@ -32,7 +32,7 @@ pub enum Kind {
     Sbf,
     /// NovAtel: BESTPOS, binary or ASCII.
     Novatel,
-    /// NMEA 0183: GGA with GST or GBS, dated by RMC or ZDA.
+    /// NMEA 0183: GGA with GST or GBS, dated by RMC or ZDA; RMC where no GGA comes.
     Nmea,
 }
 
@@ -61,17 +61,17 @@ impl Kind {
             Self::Ubx => "NAV-PVT",
             Self::Sbf => "PVTGeodetic or PVTCartesian",
             Self::Novatel => "BESTPOS",
-            Self::Nmea => "GGA",
+            Self::Nmea => "GGA, or RMC where no GGA comes",
         }
     }
 
-    /// Whether what begins with these bytes calls itself a message of a position, be it whole or not.
-    fn stands_at(self, bytes: &[u8]) -> bool {
+    /// Whether what begins with these bytes calls itself a message of a position, be it whole or not; `gga`: whether the log has a GGA.
+    fn stands_at(self, bytes: &[u8], gga: bool) -> bool {
         match self {
             Self::Ubx => bytes.get(2..4) == Some(&[0x01, 0x07]),
             Self::Sbf => bytes.get(4..6).is_some_and(|id| [4006, 4007].contains(&(u16::from_le_bytes([id[0], id[1]]) & 0x1fff))),
             Self::Novatel => bytes.starts_with(b"#BESTPOSA") || bytes.get(4..6) == Some(&[42, 0]),
-            Self::Nmea => bytes.get(3..6) == Some(b"GGA"),
+            Self::Nmea => bytes.get(3..6) == Some(if gga { b"GGA" } else { b"RMC" }),
         }
     }
 
@@ -164,6 +164,8 @@ pub enum Note {
     RiskOfLevels(u8, i8),
     /// An altitude without the separation of the geoid.
     NoSeparation,
+    /// Positions of RMC, which states nothing of how good they are.
+    OfRmc,
 }
 
 impl Note {
@@ -178,6 +180,7 @@ impl Note {
             Self::Datum(datum) => ("datum", [datum as i32, 0]),
             Self::RiskOfLevels(coefficient, exponent) => ("risk_of_levels", [coefficient as i32, exponent as i32]),
             Self::NoSeparation => ("no_separation", [0, 0]),
+            Self::OfRmc => ("of_rmc", [0, 0]),
         }
     }
 

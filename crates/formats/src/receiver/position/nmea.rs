@@ -1,6 +1,7 @@
-//! NMEA 0183: GGA with GST (or GBS) and the speed of RMC or VTG of the same time of day, dated by RMC or ZDA.
+//! NMEA 0183: GGA with GST (or GBS) and the speed of RMC or VTG of the same time of day, dated by RMC or ZDA. Where no GGA comes, RMC states the
+//! position, and neither its height, its satellites, its dilution nor its accuracy.
 //!
-//! What RMC, GLL, GNS, GSA and GBS of the same epoch say against the position of GGA takes it away, and so does the last DTM (see
+//! What RMC, GLL, GNS, GSA and GBS of the same epoch say against the position takes it away, and so does the last DTM (see
 //! [`super::datum`]). Of several accuracies the worst counts.
 //!
 //! Source: NMEA 0183 version 4 as receivers' manuals give it; standard. GGA has no date, and its height stands above the geoid.
@@ -36,9 +37,18 @@ const ZDA: u32 = name(*b"ZDA");
 
 const OF_GGA: [(&str, &str); 4] =
     [("est_lat_rad", "GGA"), ("est_lon_rad", "GGA"), ("est_h_m", "GGA altitude + separation"), ("time", "GGA, dated by RMC or ZDA:utc")];
+const OF_RMC: [(&str, &str); 3] = [("est_lat_rad", "RMC"), ("est_lon_rad", "RMC"), ("time", "RMC:utc")];
 const FIELDS: Fields = &OF_GGA;
 const FIELDS_AND_RMC: Fields = &with_speed_of("RMC");
 const FIELDS_AND_VTG: Fields = &with_speed_of("VTG");
+const RMC_ALONE: Fields = &OF_RMC;
+const RMC_ALONE_AND_RMC: Fields = &alone_with_speed_of("RMC");
+const RMC_ALONE_AND_VTG: Fields = &alone_with_speed_of("VTG");
+
+const fn alone_with_speed_of(sentence: &'static str) -> [(&'static str, &'static str); 5] {
+    let [lat, lon, time] = OF_RMC;
+    [lat, lon, time, ("ground_speed_mps", sentence), ("ground_track_rad", sentence)]
+}
 
 const fn with_speed_of(sentence: &'static str) -> [(&'static str, &'static str); 6] {
     let [lat, lon, height, time] = OF_GGA;
@@ -69,9 +79,22 @@ pub struct Heard {
     pub dated: Option<Dated>,
     /// The last datum.
     pub datum: Datum,
+    /// A GGA came: RMC states no positions of its own, neither at the epochs of GGA nor between them.
+    pub gga: bool,
 }
 
-pub(super) fn step(body: &[u8], record: u64) -> Step {
+/// Whether a sentence calls itself a GGA.
+pub(super) fn is_gga(body: &[u8]) -> bool {
+    body.get(2..6) == Some(b"GGA,")
+}
+
+/// Whether positions are those of RMC: the kind of message that holds them.
+pub(super) const fn places(kind: u32, gga: bool) -> bool {
+    kind == if gga { GGA } else { RMC }
+}
+
+/// `gga`: whether a GGA came.
+pub(super) fn step(body: &[u8], record: u64, gga: bool) -> Step {
     let fields = Sentence(body);
     if body.starts_with(b"PUBX,00,") {
         let key = fields.get(2).and_then(of_day);
@@ -96,7 +119,8 @@ pub(super) fn step(body: &[u8], record: u64) -> Step {
     }
     // A receiver without a fix leaves its fields empty.
     let Some(OfDay(key)) = fields.get(if kind == GLL { 5 } else { 1 }).and_then(of_day) else {
-        return if kind == GGA { Step::Whole(Box::new(Position::none(record, Reason::NoFix, fields.stated()))) } else { Step::Passed };
+        let stated = Own { kind, sentence: fields }.stated();
+        return if places(kind, gga) { Step::Whole(Box::new(Position::none(record, Reason::NoFix, stated))) } else { Step::Passed };
     };
     match kind {
         GGA if !fields.sound(&GGA_NUMBERS) => Step::Malformed("a field of GGA is not a number"),
@@ -151,13 +175,47 @@ fn dated((year, month, day): (i32, u8, u8), of_day_ns: i64) -> Option<Dated> {
     from_calendar(noon, Scale::Utc).map(|_| Dated { year, month, day, of_day: OfDay(of_day_ns) })
 }
 
-/// The position of a time of day; a date is still lacking. `other_datum`: what a DTM said against it.
-pub(super) fn position(messages: &[Message], other_datum: Option<&str>) -> Option<Position> {
+/// The sentence that states the position: GGA, or RMC.
+struct Own<'a> {
+    kind: u32,
+    sentence: Sentence<'a>,
+}
+
+impl Own<'_> {
+    /// Where the latitude stands; the longitude stands two fields behind it.
+    const fn at(&self) -> usize {
+        if self.kind == GGA { 2 } else { 3 }
+    }
+
+    /// A number that GGA alone states.
+    fn number(&self, at: usize) -> Option<f64> {
+        if self.kind == GGA { self.sentence.number(at) } else { None }
+    }
+
+    fn measured(&self) -> bool {
+        if self.kind == GGA {
+            return self.number(6).is_some_and(|quality| GGA_QUALITIES.iter().any(|each| f64::from(*each) == quality));
+        }
+        let mode = self.sentence.get(12).unwrap_or_default();
+        self.sentence.get(2) == Some(b"A") && matches!(mode, [] | [_]) && mode.iter().all(|letter| NMEA_MODES.contains(letter))
+    }
+
+    fn stated(&self) -> String {
+        let text = |at: usize| String::from_utf8_lossy(self.sentence.get(at).unwrap_or_default());
+        match self.kind {
+            GGA => format!("quality {}, latitude {}", text(6), text(2)),
+            _ => format!("status {}, mode {}, latitude {}", text(2), text(12), text(3)),
+        }
+    }
+}
+
+/// The position of a time of day; a date is still lacking.
+pub(super) fn position(messages: &[Message], heard: &Heard) -> Option<Position> {
     let sentence = |kind| of_kind(messages, kind).map(|message| Sentence(&message.body));
-    let (record, gga) = (of_kind(messages, GGA)?.record, sentence(GGA)?);
-    let (lat_rad, lon_rad) = (gga.angle(2, [b"N", b"S"]), gga.angle(4, [b"E", b"W"]));
-    let measured = gga.number(6).is_some_and(|quality| GGA_QUALITIES.iter().any(|each| f64::from(*each) == quality));
-    let (altitude, separation) = (gga.number(9), gga.number(11));
+    let kind = if heard.gga { GGA } else { RMC };
+    let (record, own) = (of_kind(messages, kind)?.record, Own { kind, sentence: sentence(kind)? });
+    let (lat_rad, lon_rad) = (own.sentence.angle(own.at(), [b"N", b"S"]), own.sentence.angle(own.at() + 2, [b"E", b"W"]));
+    let (altitude, separation) = (own.number(9), own.number(11));
     let all = |kind| all_of_kind(messages, kind).map(|message| Sentence(&message.body));
     let of_gst = worst(all(GST).filter_map(|gst| covariance(&gst)));
     let of_gbs = worst(all(GBS).filter_map(|gbs| expected_errors(&gbs)));
@@ -165,48 +223,53 @@ pub(super) fn position(messages: &[Message], other_datum: Option<&str>) -> Optio
     let expected = worst([of_gbs, of_pubx].into_iter().flatten());
     let enlarged = of_gst.map(|own| no_better(own, expected));
     let biased = || all(GBS).find_map(|gbs| biased_range(&gbs));
-    let against = contradiction(&gga, &sentence, other_datum).or_else(biased);
+    let against = contradiction(&own, messages, heard.datum.of_epoch.as_deref()).or_else(biased);
     let of_rmc = sentence(RMC).and_then(|rmc| rmc.number(7)).filter(|knots| *knots >= 0.0).map(|knots| knots * KNOT_MPS);
     let speed_mps = of_rmc.or_else(|| sentence(VTG).and_then(|vtg| vtg_speed_mps(&vtg).ok()?));
     let course = sentence(RMC).and_then(|rmc| rmc.number(8)).or_else(|| sentence(VTG).and_then(|vtg| vtg.number(1)));
     let track_rad = course.filter(|degrees| (0.0..=360.0).contains(degrees)).map(f64::to_radians);
-    let usable = measured && lat_rad.is_some() && lon_rad.is_some();
+    let usable = own.measured() && lat_rad.is_some() && lon_rad.is_some();
     let absent = |reason: Reason| move |stated: String| Absent { reason, stated };
-    let few = || gga.number(7).filter(|count| *count < f64::from(LEAST_SATELLITES)).map(|count| format!("{count} satellites"));
+    let few = || own.number(7).filter(|count| *count < f64::from(LEAST_SATELLITES)).map(|count| format!("{count} satellites"));
     let of_others = || of_gbs.map(|_| Note::ExpectedErrors).or(of_pubx.map(|_| Note::CircularCovariance));
     let substitute = if of_gst.is_some() { None } else { of_others() };
+    let without_separation = (altitude.is_some() && separation.is_none()).then_some(Note::NoSeparation);
     let worse = enlarged.is_some_and(|(_, worse)| worse).then_some(Note::WorseExpectedErrors);
     Some(Position {
         record,
-        of_day: of_day(gga.get(1)?),
+        of_day: of_day(own.sentence.get(1)?),
         lat_rad,
         lon_rad,
         h_m: altitude.zip(separation).map(|(altitude, separation)| altitude + separation),
         covariance_m2: enlarged.map(|(covariance, _)| covariance).or(expected),
         ground_speed_mps: speed_mps,
         ground_track_rad: track_rad,
-        n_sv: gga.number(7).map(|count| count as u32),
-        hdop: gga.number(8),
+        n_sv: own.number(7).map(|count| count as u32),
+        hdop: own.number(8),
         absent: if usable {
             against.map(absent(Reason::Contradicted)).or_else(|| few().map(absent(Reason::FewSatellites)))
         } else {
-            Some(absent(Reason::NoFix)(gga.stated()))
+            Some(absent(Reason::NoFix)(own.stated()))
         },
-        fields: match (speed_mps, of_rmc) {
-            (None, _) => FIELDS,
-            (_, Some(_)) => FIELDS_AND_RMC,
-            _ => FIELDS_AND_VTG,
+        fields: match (heard.gga, speed_mps, of_rmc) {
+            (true, None, _) => FIELDS,
+            (true, _, Some(_)) => FIELDS_AND_RMC,
+            (true, ..) => FIELDS_AND_VTG,
+            (false, None, _) => RMC_ALONE,
+            (false, _, Some(_)) => RMC_ALONE_AND_RMC,
+            (false, ..) => RMC_ALONE_AND_VTG,
         },
         covariance_from: of_gst.map(|_| "GST").or(of_gbs.map(|_| "GBS")).or(of_pubx.map(|_| "PUBX,00 hAcc, vAcc")),
-        notes: [(altitude.is_some() && separation.is_none()).then_some(Note::NoSeparation), worse.or(substitute)],
+        notes: [if heard.gga { without_separation } else { Some(Note::OfRmc) }, worse.or(substitute)],
         ..Position::default()
     })
 }
 
-/// What the sentences of an epoch say against the position of its GGA.
-fn contradiction<'a>(gga: &Sentence<'a>, sentence: &impl Fn(u32) -> Option<Sentence<'a>>, other_datum: Option<&str>) -> Option<String> {
+/// What the sentences of an epoch say against its position.
+fn contradiction(own: &Own<'_>, messages: &[Message], other_datum: Option<&str>) -> Option<String> {
+    let sentence = |kind| of_kind(messages, kind).map(|message| Sentence(&message.body));
     let place = |of: &Sentence<'_>, at: usize| of.angle(at, [b"N", b"S"]).zip(of.angle(at + 2, [b"E", b"W"]));
-    let own = place(gga, 2);
+    let own_place = place(&own.sentence, own.at());
     // Status, mode, position, navigational status.
     let beside = [
         ("RMC", RMC, Some(2), 12, 3, 13),
@@ -214,8 +277,9 @@ fn contradiction<'a>(gga: &Sentence<'a>, sentence: &impl Fn(u32) -> Option<Sente
         ("GNS", GNS, None, 6, 2, 13),
         ("PUBX", PUBX, None, ABSENT, 3, ABSENT),
     ];
-    let stated = beside.into_iter().find_map(|(name, kind, status, mode, at, navigational)| {
-        let other = sentence(kind)?;
+    // Several talkers write an RMC where no GGA stands.
+    let mut each = beside.into_iter().flat_map(|of| all_of_kind(messages, of.1).map(move |message| (of, Sentence(&message.body))));
+    let stated = each.find_map(|((name, _, status, mode, at, navigational), other)| {
         let text = |at: usize| other.get(at).filter(|text| !text.is_empty()).map(String::from_utf8_lossy);
         if let Some(status) = status.and_then(text).filter(|status| status != "A") {
             return Some(format!("{name} status {status}"));
@@ -228,8 +292,8 @@ fn contradiction<'a>(gga: &Sentence<'a>, sentence: &impl Fn(u32) -> Option<Sente
         if let Some(status) = text(navigational).filter(|status| UNSAFE.contains(&status.as_ref())) {
             return Some(format!("{name} navigational status {status}"));
         }
-        let apart_m = apart_m(own?, place(&other, at)?);
-        let resolution_m = gga.resolution_m(2) + other.resolution_m(at);
+        let apart_m = apart_m(own_place?, place(&other, at)?);
+        let resolution_m = own.sentence.resolution_m(own.at()) + other.resolution_m(at);
         (apart_m > ONE_PLACE_M + resolution_m).then(|| format!("position of {name} {apart_m:.0} m away"))
     });
     let flat = || sentence(GSA).map(|gsa| dimensions(gsa.0)).filter(|dimensions| *dimensions < GSA_DIMENSIONS);
@@ -356,11 +420,6 @@ impl<'a> Sentence<'a> {
     fn long_date(&self) -> Option<(i32, u8, u8)> {
         let whole = |at: usize| core::str::from_utf8(self.get(at)?).ok()?.parse::<u16>().ok();
         Some((i32::from(whole(4)?), u8::try_from(whole(3)?).ok()?, u8::try_from(whole(2)?).ok()?))
-    }
-
-    fn stated(&self) -> String {
-        let text = |at: usize| String::from_utf8_lossy(self.get(at).unwrap_or_default());
-        format!("quality {}, latitude {}", text(6), text(2))
     }
 }
 

@@ -22,7 +22,7 @@ pub fn of(content: &[u8]) -> Option<Kind> {
 }
 
 /// Whether a message with a position begins anywhere.
-fn position(bytes: &[u8], kind: Kind) -> bool {
+pub(super) fn position(bytes: &[u8], kind: Kind) -> bool {
     match kind {
         Kind::Ubx => memmem::find(bytes, b"\xb5\x62\x01\x07").is_some(),
         // Blocks 4006 and 4007, the revision in the upper three bits.

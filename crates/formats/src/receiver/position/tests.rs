@@ -533,3 +533,116 @@ fn positions_before_the_first_datum_of_a_file_are_in_it() {
     // What came before another one was stated to be in WGS-84. It has no time, so that it may be of the position before it, too.
     assert_eq!(of(own, other), (4, 2, 6));
 }
+
+/// RMC of a second, with what follows its time.
+fn rmc(second: u32, text: &str) -> String {
+    format!("GPRMC,1200{second:02}.00,{text}")
+}
+
+const PLACED: &str = "A,4900.0000,N,00230.0000,E,36.0,90.0,221126,,,A";
+
+#[test]
+fn positions_of_rmc_stand_where_no_gga_does() {
+    let bodies: Vec<String> = (0..6).map(|k| rmc(k, PLACED)).collect();
+    let log = read_sentences(&bodies.iter().map(String::as_str).collect::<Vec<_>>());
+    assert_eq!((log.positions.len(), log.n_rows, log.left_out.len()), (6, 6, 0));
+    assert_eq!(log.notes, [Note::OfRmc]);
+    for p in &log.positions {
+        assert_eq!((p.h_m, p.covariance_m2, p.n_sv, p.hdop), (None, None, None, None), "nothing is invented");
+        assert!(p.time.is_some() && p.ground_speed_mps.is_some_and(|speed| (speed - 18.52).abs() < 1e-9));
+        assert!(p.fields.contains(&("est_lat_rad", "RMC")));
+    }
+    // An accuracy beside it counts, and its worst; another statement takes it away.
+    let second = rmc(0, PLACED);
+    assert_eq!(read_sentences(&[&second, GST]).positions[0].covariance_m2, Some([9.0, 0.0, 4.0, 0.0, 0.0, 16.0]));
+    for (other, says) in [
+        ("GPGSA,A,1,,,,,,,,,,,,,,,", "GSA fix 1"),
+        ("GNGNS,120000.00,4900.0000,N,00230.0000,E,NN,00,,,,,,V", "GNS mode NN"),
+        ("GPGLL,4900.0000,N,00230.0000,E,120000.00,V,N", "GLL status V"),
+        ("GPDTM,NAD27,,,,,,,W84", "DTM datum NAD27"),
+        // Of a second talker, or receiver.
+        ("IIRMC,120000.00,A,4901.0000,N,00230.0000,E,36.0,90.0,221126,,,A", "position of RMC 1854 m away"),
+        ("IIRMC,120000.00,V,,,,,,,,,,N", "RMC status V"),
+    ] {
+        assert_eq!(
+            reasons(&[&second, other, &rmc(1, PLACED)]).first().map(|(reason, says)| (*reason, says.as_str())),
+            Some(("contradicted", says))
+        );
+    }
+    assert_eq!(read_sentences(&[&second, &second.replace("GPRMC", "IIRMC")]).n_rows, 1, "one epoch");
+}
+
+#[test]
+fn an_rmc_without_a_measured_position_is_an_epoch_without_one() {
+    for (text, usable) in [
+        ("A,4900.0000,N,00230.0000,E,1.0,,221126,,", true),
+        ("A,4900.0000,N,00230.0000,E,1.0,,221126,,,D", true),
+        ("A,4900.0000,N,00230.0000,E,1.0,,221126,,,F,V", true),
+        ("V,4900.0000,N,00230.0000,E,1.0,,221126,,,A", false),
+        ("A,4900.0000,N,00230.0000,E,1.0,,221126,,,E", false),
+        ("A,4900.0000,N,00230.0000,E,1.0,,221126,,,M", false),
+        ("A,4900.0000,N,00230.0000,E,1.0,,221126,,,S", false),
+        ("A,4900.0000,N,00230.0000,E,1.0,,221126,,,N", false),
+        ("A,,,,,1.0,,221126,,,A", false),
+        ("A,49x0.0000,N,00230.0000,E,1.0,,221126,,,A", false),
+        (",4900.0000,N,00230.0000,E,1.0,,221126,,,A", false),
+    ] {
+        let log = read_sentences(&[&rmc(0, PLACED), &rmc(1, text), &rmc(2, PLACED)]);
+        let absent = log.left_out.iter().map(|each| (each.reason, each.count)).collect::<Vec<_>>();
+        assert_eq!((log.positions.len(), log.n_rows), (2 + usize::from(usable), 3), "{text}");
+        assert_eq!(absent, if usable { vec![] } else { vec![("no_fix", 1)] }, "{text}");
+    }
+    // Before the first fix: neither time nor place.
+    let log = read_sentences(&["GPRMC,,V,,,,,,,,,,N", "GPRMC,,V,,,,,,,,,,N", &rmc(2, PLACED)]);
+    assert_eq!((log.positions.len(), log.n_rows, log.absent.as_slice()), (1, 3, &[None, None][..]));
+    // No date, since there was never a fix: each is an epoch without a position, and nothing waits for a date.
+    let log = read_sentences(&[&rmc(0, "V,,,,,,,,,,N"), &rmc(1, "V,,,,,,,,,,N")]);
+    assert_eq!((log.undated, log.n_rows, log.absent.len()), (None, 2, 2));
+    // A damaged sentence of the position was an epoch.
+    let mut bytes = [rmc(0, PLACED), rmc(1, PLACED)].map(|body| sentence(&body)).concat();
+    bytes[20] ^= 1;
+    let log = log::read(&bytes, Kind::Nmea);
+    assert_eq!((log.positions.len(), log.n_rows, log.absent.len()), (1, 2, 1));
+}
+
+#[test]
+fn rmc_overrules_no_gga() {
+    // Not at its epoch, whatever its order, and not between its epochs.
+    let none = GGA.replace(",1,08,", ",0,00,");
+    for order in [[rmc(0, PLACED), none.clone()], [none.clone(), rmc(0, PLACED)]] {
+        let log = read_sentences(&[&order[0], &order[1], &rmc(1, PLACED), &rmc(2, PLACED)]);
+        assert_eq!((log.positions.len(), log.n_rows, log.left_out[0].reason), (0, 1, "no_fix"));
+    }
+    // One without time or place, and a damaged one, are a GGA.
+    for gga in [sentence("GPGGA,,,,,,0,00,,,M,,M,,"), b"$GPGGA,120000.00,4900.0000,N*00\r\n".to_vec()] {
+        let bytes = [sentence(&rmc(0, PLACED)), gga, sentence(&rmc(1, PLACED))].concat();
+        assert_eq!(log::read(&bytes, Kind::Nmea).positions.len(), 0);
+    }
+    // A stream has one position an epoch from the first on, in any order, wherever it begins.
+    let order = [rmc(0, PLACED), GGA.to_owned(), "GPVTG,90.0,T,,M,36.0,N,,K,A".to_owned(), GST.to_owned()];
+    for turn in 0..4 {
+        for begin in 0..4 {
+            let bodies: Vec<String> = (0..30_usize)
+                .map(|at| at + begin)
+                .map(|at| order[(at % 4 + turn) % 4].replace("120000", &format!("1200{:02}", at / 4)))
+                .collect();
+            let frames: Vec<Frame<'_>> = bodies.iter().map(|body| Frame::Nmea(body.as_bytes())).collect();
+            let items = items(&frames, Kind::Nmea, Ends::WithLast, true);
+            let times: Vec<_> = positions(&items).iter().map(|p| p.of_day.map(|OfDay(ns)| ns)).collect();
+            assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{turn} {begin}");
+            assert!(positions(&items).iter().all(|p| p.fields.contains(&("est_lat_rad", "GGA"))), "{turn} {begin}");
+        }
+    }
+}
+
+#[test]
+fn a_stream_of_rmc_alone_has_the_positions_of_the_file() {
+    let bodies: Vec<String> = (0..20).map(|k| rmc(k, if k == 7 { "V,,,,,,,221126,,,N" } else { PLACED })).collect();
+    let frames: Vec<Frame<'_>> = bodies.iter().map(|body| Frame::Nmea(body.as_bytes())).collect();
+    for (ends, restored) in [(Ends::WithNext, false), (Ends::WithLast, false), (Ends::WithLast, true)] {
+        let items = items(&frames, Kind::Nmea, ends, restored);
+        let absent: Vec<_> = positions(&items).iter().map(|p| p.absent.as_ref().map(|absent| absent.reason)).collect();
+        let expected: Vec<_> = (0..20).map(|k| (k == 7).then_some(Reason::NoFix)).collect();
+        assert_eq!(absent, expected, "{ends:?}");
+    }
+}
