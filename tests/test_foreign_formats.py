@@ -12,12 +12,14 @@ import struct
 from pathlib import Path
 
 import numpy as np
+import polars as pl
 import pytest
 
 import navbound
-from navbound import FormatError, InputError, araim, gnss, raim
+from navbound import FormatError, InputError, araim, gnss, live, raim
 from navbound.exit_status import NO_VERDICT, of_verdict
 from navbound.read import formats
+from test_live_receivers import RNP_M, lived
 
 RANDOM = random.Random(3)
 START_S = 1_741_096_809
@@ -181,24 +183,35 @@ def sentence(body: str) -> str:
     return f"${body}*{functools.reduce(operator.xor, body.encode()):02X}\r\n"
 
 
-def nmea(n: int, few: set[int]) -> str:
-    """GGA with a valid quality, and RMC with its date; of some epochs GGA counts no satellite."""
+def nmea(n: int, few: set[int], count: int = 0) -> str:
+    """GGA with a valid quality, and RMC with its date; of some epochs GGA counts too few satellites."""
     out = ""
     for k in range(n):
         time = f"1200{k:02d}.00"
-        out += sentence(f"GPGGA,{time},4804.{k:04d},N,00230.0000,E,1,{'00' if k in few else '09'},1.0,100.0,M,47.0,M,,")
+        out += sentence(f"GPGGA,{time},4804.{k:04d},N,00230.0000,E,1,{count if k in few else 9:02d},1.0,100.0,M,47.0,M,,")
         out += sentence(f"GPRMC,{time},A,4804.{k:04d},N,00230.0000,E,0.4,0.0,150725,,,A")
     return out
 
 
+@pytest.mark.parametrize(
+    ("count", "of_few"), [(0, "not_available reported"), (2, "not_available reported"), (3, "degraded few_satellites")]
+)
 @pytest.mark.parametrize("few", [set(), {5, 6}, set(range(60))])
-def test_a_valid_fix_of_no_satellite_is_degraded_and_counted(tmp_path: Path, few: set[int]) -> None:
+def test_a_valid_fix_of_too_few_satellites_is_not_ok_and_counted(tmp_path: Path, few: set[int], count: int, of_few: str) -> None:
     file = tmp_path / "log.nmea"
-    file.write_text(nmea(60, few))
+    file.write_text(nmea(60, few, count))
     run = navbound.analyze(file, sigma_m=5.0)
-    assert run.summary.n_status == {kind: n for kind, n in (("degraded", len(few)), ("ok", 60 - len(few))) if n}
-    reasons = set(run.epochs.filter(run.epochs["status"] == "degraded")["reason_id"])
-    assert reasons == ({"few_satellites"} if few else set())
+    status, reason_id = of_few.split()
+    assert run.summary.n_status == {kind: n for kind, n in ((status, len(few)), ("ok", 60 - len(few))) if n}
+    stated = run.epochs.filter(pl.col("status") != "ok")
+    assert set(stated["reason_id"]) == ({reason_id} if few else set())
+    assert status == "degraded" or set(stated["reason"]) == ({f"the recording states {count} satellites"} if few else set())
+    # A stream of the same bytes decides the same.
+    epochs = lived(file, tmp_path / "live", live.Settings(format="nmea", rnp_m=RNP_M, sigma_m=5.0, standing=True))
+    both = epochs.join(run.epochs, on="time_ns", suffix="_batch")
+    assert both.height == 60
+    assert (both["status"] == both["status_batch"]).all()
+    assert both["reason_id"].eq_missing(both["reason_id_batch"]).all()
     counted = [words for words in run.summary.assumptions if "count fewer satellites than determine one" in words]
     assert [f" {len(few)} positions" in words for words in counted] == ([True] if few else [])
     if len(few) == 60:

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// Positions of a log of `kind` as columns, NaN where a message does not state a number; `left_out` as (reason id, damaged, count, first
-/// message, example); `fields` from quantity to message; `notes` as (id, two numbers); `undated`: the first of positions that nothing dates.
+/// message, example); `few`: what a position counts of satellites that make it none; `fields` from quantity to message; `notes` as (id, two numbers); `undated`: the first of positions that nothing dates.
 #[pyfunction]
 fn read_positions<'py>(py: Python<'py>, content: &[u8], kind: &str) -> PyResult<Bound<'py, PyDict>> {
     let unknown = OutOfDomain { argument: "kind", value: f64::NAN, unit: "id", domain: "ubx, sbf, novatel, nmea" };
@@ -24,6 +24,7 @@ fn read_positions<'py>(py: Python<'py>, content: &[u8], kind: &str) -> PyResult<
     for (name, of) in COLUMNS {
         d.set_item(name, column(of))?;
     }
+    d.set_item("few", rows.iter().map(|p| p.absent.as_ref().map(|absent| absent.stated.as_str())).collect::<Vec<_>>())?;
     d.set_item("n_sv", rows.iter().map(|p| p.n_sv).collect::<Vec<_>>())?;
     let covariance: Vec<f64> = rows.iter().flat_map(|p| p.covariance_m2.unwrap_or([f64::NAN; 6])).collect();
     d.set_item("cov_m2", covariance.into_pyarray(py).reshape([n, 6])?)?;

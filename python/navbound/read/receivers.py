@@ -60,7 +60,8 @@ class Log:
     Attributes
     ----------
     epochs : DataFrame
-        Columns of docs/notation.md, with ``record``, the number of the message from 1.
+        Columns of docs/notation.md, with ``record``, the number of the message from 1, and ``few``, the number of satellites in words
+        where they are too few for a position that is used, else null.
     n_rows : int
         Positions in the log, used or not.
     left_out : list of (str, bool, int, int, str)
@@ -107,7 +108,7 @@ def read(source: Source, name: str) -> Log:
 
 def _epochs(fields: dict[str, Any]) -> pl.DataFrame:
     plain = {name: column for name, column in fields.items() if name not in _COUNTS}
-    out = pl.DataFrame(plain, schema_overrides={"n_sv": pl.Int64, "record": pl.Int64})
+    out = pl.DataFrame(plain, schema_overrides={"n_sv": pl.Int64, "record": pl.Int64, "few": pl.String})
     return out.with_columns(pl.Series(name, fields["cov_m2"][:, k]) for k, name in enumerate(COVARIANCE))
 
 

@@ -140,10 +140,17 @@ def of_satellites(rows: pl.DataFrame) -> pl.DataFrame:
     return status.overridden(rows, pl.select(pl.when(few).then(pl.lit("coasting"))).to_series())
 
 
-def of_counted_satellites(rows: pl.DataFrame) -> tuple[pl.DataFrame, int]:
-    """Positions of a receiver's log beside a count of satellites that determines none: which of the two is wrong nobody knows."""
+def of_counted_satellites(rows: pl.DataFrame, unusable: pl.Series | None = None) -> tuple[pl.DataFrame, int]:
+    """Positions of a receiver's log beside a count of satellites that determines none: which of the two is wrong nobody knows.
+
+    ``unusable``: the count in words where the decoder of the log, which streams use too, takes the position for none.
+    """
     few = (rows["n_sv"] < _core.DETERMINING_SATELLITES).fill_null(value=False) if "n_sv" in rows.columns else pl.Series([False])
     if not few.any():
         return rows, 0
     rows = rows.with_columns(pl.lit("ok").alias("status"))
-    return status.overridden(rows, pl.select(pl.when(few).then(pl.lit("few_satellites"))).to_series()), int(few.sum())
+    rows = status.overridden(rows, pl.select(pl.when(few).then(pl.lit("few_satellites"))).to_series())
+    if unusable is not None and unusable.is_not_null().any():
+        sentence = pl.select(pl.lit("the recording states ") + pl.lit(unusable)).to_series()
+        rows = status.overridden(rows, pl.select(pl.when(sentence.is_not_null()).then(pl.lit("reported"))).to_series(), sentence)
+    return rows, int(few.sum())

@@ -102,7 +102,8 @@ pub enum Reason {
     NoFix,
     /// Another statement of the same epoch says that there is no such position.
     Contradicted,
-    /// The message of the position itself counts fewer satellites than determine one. A log keeps such a position, as one that is trusted less.
+    /// The message of the position itself counts fewer satellites than determine one. A log keeps its row, which is not
+    /// used, as live.
     FewSatellites,
     /// The satellites hardly determine the position, by its own dilution.
     Dilution,
