@@ -14,8 +14,8 @@ from navbound.read.motion.balance import Balance
 from navbound.read.motion.counts import Comparison
 from navbound.read.motion.directions import Directions
 from navbound.read.motion.scatter import Steps
+from navbound.read.motion.velocity import sigma_m, stated_speed, stated_track
 from navbound.read.motion.ways import LONGEST_STEP_S, OFFSET_M, WINDOW_NS, Ways
-from navbound.table.columns import HORIZONTAL
 
 if TYPE_CHECKING:
     from navbound.records.material import Scatter
@@ -35,11 +35,11 @@ class Speeds:
 
     def see(self, epochs: pl.DataFrame) -> None:
         """The next epochs."""
-        speed = _stated(epochs)
+        speed = stated_speed(epochs)
         if epochs.is_empty() or (speed is None and "ground_track_rad" not in epochs.columns):
             return
         speed = pl.lit(float("nan")) if speed is None else speed
-        own = {"_speed": speed, "_sigma": _sigma_m(epochs), "_whither": _whither(epochs), "_plausible": plausible_rows(epochs)}
+        own = {"_speed": speed, "_sigma": sigma_m(epochs), "_whither": stated_track(epochs), "_plausible": plausible_rows(epochs)}
         # A position of which something worse is known already is passed over: it must not hide the minute around it.
         rows = epochs.select("track", "time_ns", "est_lat_rad", "est_lon_rad", **own).filter("_plausible").drop("_plausible")
         if rows.is_empty():
@@ -105,30 +105,6 @@ _CARRIED = (
     .fill_null(float("nan"))
 )
 """The last speed, for as long as a step may be."""
-
-
-def _stated(epochs: pl.DataFrame) -> pl.Expr | None:
-    """Speed over ground as the recording states it [m/s]; None where it states none."""
-    if "ground_speed_mps" in epochs.columns:
-        return pl.col("ground_speed_mps").cast(pl.Float64).fill_null(float("nan"))
-    if {"vel_n_mps", "vel_e_mps"} <= set(epochs.columns):
-        return (pl.col("vel_n_mps") ** 2 + pl.col("vel_e_mps") ** 2).sqrt().fill_null(float("nan"))
-    return None
-
-
-def _whither(epochs: pl.DataFrame) -> pl.Expr:
-    """Direction of the speed as the recording states it [rad]; NaN where it states none."""
-    if "ground_track_rad" not in epochs.columns:
-        return pl.lit(float("nan"))
-    return pl.col("ground_track_rad").cast(pl.Float64).fill_null(float("nan"))
-
-
-def _sigma_m(epochs: pl.DataFrame) -> pl.Expr:
-    """Root of both horizontal variances [m]; 0 where there is none."""
-    if not set(HORIZONTAL) <= set(epochs.columns):
-        return pl.lit(0.0)
-    ee, _, nn = (pl.col(name) for name in HORIZONTAL)
-    return (ee + nn).sqrt().fill_null(0.0).fill_nan(0.0)
 
 
 def speeds_of(epochs: pl.DataFrame) -> Speeds:

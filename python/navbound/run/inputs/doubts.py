@@ -15,8 +15,8 @@ from navbound.status import USABLE
 if TYPE_CHECKING:
     from collections.abc import Container
 
-    from navbound.read.checks.axes import Axes
     from navbound.read.checks.plausible import Plausibility
+    from navbound.read.motion.axes import Axes
     from navbound.read.motion.speeds import Speeds
 
 

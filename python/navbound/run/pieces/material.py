@@ -10,9 +10,9 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, status
-from navbound.read.checks.axes import Axes
 from navbound.read.checks.plausible import Checker, Limits, Plausibility
 from navbound.read.covariance import Claimed, Claims
+from navbound.read.motion.axes import Axes
 from navbound.read.motion.speeds import Speeds
 from navbound.read.pieces import Frames, PiecedReading, read_pieces
 from navbound.read.pieces.parquet import is_parquet, shape
