@@ -38,15 +38,18 @@ class Compared:
     longest: float = 0.0
     gross: float = 0.0
     excess_m: float = 0.0
+    worst: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
-    def count(self, minutes: float, *, false: bool, gross: bool, excess_m: float) -> None:
-        """The next window."""
+    def count(self, minutes: float, *, false: bool, gross: bool, excess_m: float, worst: tuple[float, float, float]) -> None:
+        """The next window; of a false one how far it is off, and its lengths."""
         self.minutes += minutes
         self.false += minutes * false
         self.run = self.run + minutes if false else 0.0
         self.longest = max(self.longest, self.run)
         self.gross += minutes * gross
         self.excess_m += max(0.0, excess_m)
+        if false and worst[0] > self.worst[0]:
+            self.worst = worst
 
     def contradict(self) -> bool:
         """Whether they are enough to doubt the track."""
@@ -60,8 +63,11 @@ class Comparison:
 
     expected: float = 1.0
     tracks: dict[str, Compared] = field(default_factory=dict)
-    worst: tuple[float, float] = (0.0, 0.0)
-    excess_m: float = 0.0
+
+    @property
+    def worst(self) -> tuple[float, float]:
+        """The lengths that are furthest off."""
+        return max((each.worst for each in self.tracks.values()), default=(0.0, 0.0, 0.0))[1:]
 
     def count(
         self,
@@ -76,11 +82,10 @@ class Comparison:
         none = np.zeros(len(windows.tracks))
         further = (each.tolist() for each in (false, none > 0 if gross is None else gross, none if beyond_m is None else beyond_m))
         minutes = np.where(windows.length_s >= _WHOLE_S, 1.0, windows.length_s / WINDOW_S).tolist()
-        for track, length, is_false, is_gross, excess_m in zip(windows.tracks, minutes, *further, strict=True):
-            self.tracks.setdefault(track, Compared()).count(length, false=is_false, gross=is_gross, excess_m=excess_m)
-        excess_m = np.where(false, np.abs(lengths_m[:, 0] - self.expected * lengths_m[:, 1]), 0.0)
-        if excess_m.size and excess_m.max() > self.excess_m:
-            self.worst, self.excess_m = tuple(lengths_m[excess_m.argmax()].tolist()), float(excess_m.max())
+        off_m = np.abs(lengths_m[:, 0] - self.expected * lengths_m[:, 1])
+        worst = zip(off_m.tolist(), *lengths_m.T.tolist(), strict=True)
+        for track, length, is_false, is_gross, excess_m, lengths in zip(windows.tracks, minutes, *further, worst, strict=True):
+            self.tracks.setdefault(track, Compared()).count(length, false=is_false, gross=is_gross, excess_m=excess_m, worst=lengths)
 
     def of(self) -> str | None:
         """How many minutes contradict, in words; None where they are too few."""
@@ -91,3 +96,13 @@ class Comparison:
             return None
         which = f" ({len(false)} of {len(self.tracks)} tracks, {false[0]} the first of them)" if false and len(self.tracks) > 1 else ""
         return f"in {of_these:.0f} of {counted(round(minutes), 'minute')}{which}"
+
+
+def best_of(comparisons: list[Comparison]) -> Comparison:
+    """Of several readings of the same windows the one that contradicts each track least."""
+    best = Comparison(comparisons[0].expected)
+    for name in comparisons[0].tracks:
+        best.tracks[name] = min(
+            (each.tracks[name] for each in comparisons), key=lambda each: (each.contradict(), each.false, each.excess_m)
+        )
+    return best

@@ -9,11 +9,15 @@ import numpy as np
 import polars as pl
 
 from navbound.read.checks.places import half_turn_s, wrapped
-from navbound.read.motion.counts import Comparison
+from navbound.read.motion.counts import Comparison, best_of
+from navbound.read.motion.sideways import Sideways
+from navbound.read.motion.velocity import CONVENTIONS, MEAN
 from navbound.read.motion.ways import LONGEST_STEP_S, WINDOW_NS, WINDOW_S, Ways
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from navbound.read.motion.ways import Minutes
 
 _ASIDE = 0.05
 """Share of the way by which the displacement of a window may differ from that of speed and track: a track rounded to two degrees and turns
@@ -34,11 +38,13 @@ class Directions:
     """
 
     def __init__(self) -> None:
-        self._aside = Comparison(expected=0.0)
+        self._aside = [Comparison(expected=0.0) for _ in CONVENTIONS]
+        self.sideways = Sideways()
         self._waiting: pl.DataFrame | None = None
 
     def see(self, rows: pl.DataFrame) -> None:
         """The next rows, with the speeds and tracks that they state themselves."""
+        self.sideways.see(rows)
         rows = rows.with_columns(_window=pl.col("time_ns") // WINDOW_NS, _judged=pl.lit(value=False))
         rows = rows if self._waiting is None else pl.concat([self._waiting, rows])
         window = rows.select(pl.struct("track", "_window").rle_id())["track"].cast(pl.Int64).to_numpy()
@@ -54,7 +60,7 @@ class Directions:
         if self._waiting is not None:
             self._judge(self._waiting, ~self._waiting["_judged"].to_numpy())
             self._waiting = None
-        return self._aside
+        return best_of(self._aside)
 
     def _judge(self, rows: pl.DataFrame, which: NDArray[np.bool_]) -> None:
         if not which.any():
@@ -63,23 +69,33 @@ class Directions:
         plain = Ways(rows, WINDOW_S)
         own_mps = np.where(np.isfinite(speed[:-1]), 0.5 * (speed[:-1] + speed[1:]), plain.step_m / np.maximum(plain.step_s, 1e-9))
         turn = wrapped(np.diff(whither))
-        mean, half = whither[:-1] + 0.5 * turn, 0.5 * turn
-        chord = np.sinc(half / np.pi)[:, None] * np.column_stack([np.sin(mean), np.cos(mean)])
-        stated_m = 0.5 * (speed[:-1] + speed[1:]) * plain.step_s
-        stated_en_m, towards_s = stated_m[:, None] * chord, plain.step_s[:, None] * chord
-        sound = plain.sound & (plain.step_s <= half_turn_s(own_mps)) & np.isfinite(mean)
+        length = np.sinc(0.5 * turn / np.pi)[:, None]
+        sound = plain.sound & (plain.step_s <= half_turn_s(own_mps)) & np.isfinite(turn)
         minutes = plain.minutes(rows, rows.height, sound).of(which)
-        by_speed_m, step_s = minutes.sums(stated_m), minutes.sums(plain.step_s)
-        whither_m = np.column_stack([minutes.sums(each) for each in stated_en_m.T])
-        # Without a speed the way of the positions leads in the mean direction.
-        unstated = ~np.isfinite(by_speed_m)
-        towards = np.column_stack([minutes.sums(each) for each in towards_s.T]) / step_s[:, None]
-        by_speed_m = np.where(unstated, minutes.way_m, by_speed_m)
-        whither_m = np.where(unstated[:, None], minutes.way_m[:, None] * towards, whither_m)
-        aside_m = np.hypot(*(minutes.apart_en_m - whither_m).T)
-        beyond_m = aside_m - _ASIDE * by_speed_m - minutes.margin_m
-        gross = (aside_m > _GROSS * by_speed_m + minutes.margin_m) & (beyond_m > _GROSS_M)
-        self._aside.count(minutes, beyond_m > 0.0, np.column_stack([aside_m, by_speed_m]), gross=gross, beyond_m=beyond_m)
+        stated_m = 0.5 * (speed[:-1] + speed[1:]) * plain.step_s
+        for share, aside in zip(CONVENTIONS, self._aside, strict=True):
+            towards = whither[:-1] + share * turn
+            chord = length * np.column_stack([np.sin(towards), np.cos(towards)])
+            by_speed_m, whither_m = _lead(minutes, stated_m, plain.step_s, chord)
+            aside_m = np.hypot(*(minutes.apart_en_m - whither_m).T)
+            beyond_m = aside_m - _ASIDE * by_speed_m - minutes.margin_m
+            gross = (aside_m > _GROSS * by_speed_m + minutes.margin_m) & (beyond_m > _GROSS_M)
+            aside.count(minutes, beyond_m > 0.0, np.column_stack([aside_m, by_speed_m]), gross=gross, beyond_m=beyond_m)
+            if share == MEAN:
+                self.sideways.count(minutes, whither_m, by_speed_m, beyond_m <= 0.0)
+
+
+def _lead(
+    minutes: Minutes, stated_m: NDArray[np.float64], step_s: NDArray[np.float64], chord: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Ways of windows by their speeds, and where they end by their speeds and tracks."""
+    by_speed_m = minutes.sums(stated_m)
+    whither_m = np.column_stack([minutes.sums(each) for each in (stated_m[:, None] * chord).T])
+    # Without a speed the way of the positions leads in the mean direction.
+    unstated = ~np.isfinite(by_speed_m)
+    towards = np.column_stack([minutes.sums(each) for each in (step_s[:, None] * chord).T]) / minutes.sums(step_s)[:, None]
+    whither_m = np.where(unstated[:, None], minutes.way_m[:, None] * towards, whither_m)
+    return np.where(unstated, minutes.way_m, by_speed_m), whither_m
 
 
 def _between_statements(rows: pl.DataFrame) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -96,6 +96,8 @@ class Speeds:
                 f"such as that of the track, is not what it is read as "
                 f"({declare(f'ground_track_rad={NO_COLUMN}')}, to leave the track out)"
             )
+        elif not doubts and (drift := self._directions.sideways.words()) is not None:
+            doubts.append(drift)
         return doubts
 
 

@@ -31,6 +31,7 @@ def sigma_m(epochs: pl.DataFrame) -> pl.Expr:
     return (ee + nn).sqrt().fill_null(0.0).fill_nan(0.0)
 
 
-CONVENTIONS = (0.5, 0.0, 1.0)
+MEAN = 0.5
+CONVENTIONS = (MEAN, 0.0, 1.0)
 """Between two rows the way leads in the mean direction of both, in that of the earlier row, or, where a recorder states the way that led to
 a row, in that of the later one. A track has one of these throughout. [1]"""
