@@ -2,7 +2,7 @@
 //!
 //! Source: NMEA 0183 version 4 as receivers' manuals give it; standard. Some receivers write DTM at each epoch, others once at their start.
 
-use super::nmea::{EARTH_M, Sentence};
+use super::sentence::{EARTH_M, Sentence};
 
 /// Names of WGS-84, and of PZ-90, which is within metres of it. Others are none, as a position in them is further off than receivers err: WGS-72 is
 /// turned by 0.554 seconds of arc, 17 m at the equator, SGS-85 by as much, and one that a user defined may be any. Provenance: standard (codes of

@@ -10,6 +10,7 @@ pub mod log;
 mod nmea;
 mod novatel;
 mod sbf;
+mod sentence;
 pub mod sign;
 mod ubx;
 
