@@ -105,3 +105,13 @@ def test_the_course_of_the_way_that_led_to_a_row_is_a_course(tmp_path: Path, spe
 def test_circles_between_rows_are_no_contradiction(tmp_path: Path, speed_mps: float, turn_deg_s: float, every_s: int) -> None:
     table = moved(speed_mps, 1.0, n=400, turn_deg_s=turn_deg_s, every_s=every_s)
     assert not [each for each in doubts(tmp_path, table) if WORDS in each]
+
+
+@pytest.mark.parametrize(("speed_mps", "turn_deg_s", "every_s"), [(20.0, 60.0, 1), (26.0, 45.0, 1), (26.0, 45.0, 2), (45.0, 60.0, 1)])
+def test_steep_circles_travel_as_far_as_they_say(tmp_path: Path, speed_mps: float, turn_deg_s: float, every_s: int) -> None:
+    """Beyond 60 degrees of bank, as models and gliders fly: a leg of five seconds is most of a circle."""
+    table = moved(speed_mps, 1.0, n=400, turn_deg_s=turn_deg_s, every_s=every_s)
+    assert not [each for each in doubts(tmp_path, table) if "less far" in each]
+    # Half of the speed shows in circles, too.
+    half = moved(speed_mps, 1.0, n=400, turn_deg_s=turn_deg_s, every_s=every_s).with_columns(ground_speed_mps=pl.lit(2.0 * speed_mps))
+    assert [each for each in doubts(tmp_path, half) if "less far" in each]

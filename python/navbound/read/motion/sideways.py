@@ -135,7 +135,8 @@ class Sideways:
         return (
             f"The positions drift aside of the recording's own tracks by {aside_m:.0f} m in {counted(n, 'minute')}, on a way of "
             f"{way_m:.0f} m (track {name}, {len(drifts)} of {counted(len(self._tracks), 'track')}): the positions are led off, or a "
-            f"column, such as that of the track, is not what it is read as ({declare(f'ground_track_rad={NO_COLUMN}')}, to leave the track out)"
+            f"column, such as that of the track, is not what it is read as "
+            f"({declare(f'ground_track_rad={NO_COLUMN}')}, to leave the track out)"
         )
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import polars as pl
 
-from navbound.read.checks.places import east_north_m
+from navbound.read.checks.places import east_north_m, wrapped
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,6 +27,9 @@ _LEG_NS = 10_000_000_000
 shortens it by one in a hundred. Provenance: ours. [ns]"""
 _SLOW_MPS = 55.0
 """Below it an aircraft may turn by half a turn within a leg, as a glider does; its legs are half as long. Provenance: ours. [m/s]"""
+_LEG_TURN_RAD, _SHORTEST_LEG_S = math.radians(60.0), 1.0
+"""A leg turns by no more than this, as the reported track does in its minute: in steep circles it is shorter, down to a second.
+Provenance: ours. [rad, s]"""
 OFFSET_M = 3.0 * WINDOW_S
 """Difference of ways over a window that shows nothing, 3 m/s: rounding, wind on a filtered track, a slow filter. Provenance: ours. [m]"""
 _DEVIATIONS = 6.0
@@ -66,6 +70,8 @@ class Ways:
         self._place, self._sigma = rows.select("est_lat_rad", "est_lon_rad").to_numpy(), rows["_sigma"].to_numpy()
         self.step_s = np.diff(self._time_ns) * 1e-9
         self.step_m = np.hypot(*east_north_m(self._place[:-1], self._place[1:]).T)
+        # Where no track is stated none turns.
+        self._turn_rad = np.nan_to_num(np.abs(wrapped(np.diff(rows["_whither"].to_numpy()))))
         track = rows["track"].rle_id().to_numpy()
         self.sound = (track[1:] == track[:-1]) & np.isfinite(self.step_m) & (self.step_s > 0) & (self.step_s <= longest_s)
 
@@ -87,9 +93,17 @@ class Ways:
             first=first,
             stop=stop,
             apart_en_m=east_north_m(self._place[first], self._place[stop]),
-            way_m=np.minimum(steps_m, self._legs_m(first, stop, np.where(steps_m < _SLOW_MPS * length_s, _LEG_NS // 2, _LEG_NS))),
+            way_m=np.minimum(steps_m, self._legs_m(first, stop, self._leg_ns(first, stop, steps_m, length_s))),
             margin_m=OFFSET_M + noise_m,
         )
+
+    def _leg_ns(
+        self, first: NDArray[np.intp], stop: NDArray[np.intp], steps_m: NDArray[np.float64], length_s: NDArray[np.float64]
+    ) -> NDArray[np.int64]:
+        """How long the legs of each window are."""
+        leg_ns = np.where(steps_m < _SLOW_MPS * length_s, _LEG_NS // 2, _LEG_NS)
+        turn_s = _LEG_TURN_RAD * length_s / np.maximum(_sums(self._turn_rad, first, stop), 1e-9)
+        return np.minimum(leg_ns, (1e9 * np.clip(turn_s, _SHORTEST_LEG_S, WINDOW_S)).astype(np.int64))
 
     def _legs_m(self, first: NDArray[np.intp], stop: NDArray[np.intp], leg_ns: NDArray[np.int64]) -> NDArray[np.float64]:
         """The ways over legs of some seconds, the last of each window as long as it is."""
