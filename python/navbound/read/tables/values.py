@@ -11,19 +11,18 @@ from navbound.read import own_positions
 from navbound.read.beside.further import Further, Speeds
 from navbound.read.beside.hemispheres import Hemispheres
 from navbound.read.beside.no_speed import NoSpeeds
+from navbound.read.beside.position_times import PositionTimes
 from navbound.read.beside.speed_unit import SPEED, SpeedUnit
 from navbound.read.beside.unstated_units import UnstatedUnits
 from navbound.read.checks import levels, stated
 from navbound.read.checks.places import NO_PLACE, Nowhere
-from navbound.read.checks.rejections import COMPARED, DATED, LEVELS, OPTIONAL, REQUIRED, SPEEDS, Kind, Tally
+from navbound.read.checks.rejections import COMPARED, LEVELS, OPTIONAL, REQUIRED, SPEEDS, Kind, Tally
 from navbound.read.checks.repeats import expected, median_rows, usual_rows
 from navbound.read.columns.assign import is_header
 from navbound.read.columns.column import POSITION, Assignment, Column
-from navbound.read.columns.timed import position_time
-from navbound.read.quantities import POSITION_TIME, QUANTITY, UNITS
-from navbound.read.statements.kinds import AGES, BY_OTHERS, STALE_AFTER_S
+from navbound.read.quantities import QUANTITY, UNITS
+from navbound.read.statements.kinds import BY_OTHERS
 from navbound.read.statements.rows import Stating
-from navbound.read.statements.texts import Stated
 from navbound.read.tables.cells import (
     MISSING,
     in_hemisphere,
@@ -37,7 +36,6 @@ from navbound.read.tables.names import Callsigns, one_writing
 from navbound.read.tables.stated_units import is_row_of_units, require_same
 from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, shown, understand, units
-from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -46,13 +44,6 @@ if TYPE_CHECKING:
 
 _BAD, _EXAMPLE = "__bad", "__example"
 _RAW = "__raw "
-
-_LATE = "later than its row"
-_AGE, _OLDEST_S = "__age_s", 1e6
-"""Column of the age that a row states of its position, and the largest that dates it. [s] Provenance: ours."""
-_AHEAD_NS = 1_000_000_000
-"""How much later than its row a position may be said to be: both may be rounded."""
-
 
 SHOWN = 20
 """Rows that show whether a column holds words: as many as the shortest piece of a file has. Provenance: ours."""
@@ -92,20 +83,19 @@ class Values:
     def __init__(self, path: Path, stem: str, mapping: Assignment, required: Sequence[str]) -> None:
         self.tally, self.notes, self.position_doubts = Tally(), list[str](), list[str]()
         self._path, self._stem, self._mapping, self._required = path, stem, mapping, required
-        self._dated = position_time(mapping.unused)
+        self._times = PositionTimes(path, mapping.unused, mapping.statements)
         self._no_speeds = NoSpeeds()
         self._further, self._speeds = Further(path, mapping, self._no_speeds), Speeds(mapping.absent)
         self._hemispheres = Hemispheres(path, mapping)
         self._nowhere, self.whole_seconds = Nowhere(), True
         self._callsigns = Callsigns()
         self._speed = SpeedUnit(mapping.speed) if mapping.speed else None
-        self._facts, self._facts_dated = list[TimeFacts](), list[TimeFacts]()
+        self._facts = list[TimeFacts]()
         self._dtypes: dict[str, pl.DataType] = {}
         self._times_of: dict[int, int] = {}
         self._stating, self._units = Stating(mapping), UnstatedUnits(path, mapping)
-        self._unit = self._unit_dated = ""
+        self._unit = ""
         self._n_ground: dict[str, int] = {}
-        self._n_dated = self._n_undated = 0
         self._altitude = self._units.altitude
 
     def take(self, frame: pl.DataFrame) -> pl.DataFrame:
@@ -142,10 +132,7 @@ class Values:
             self.tally.add(
                 LEVELS + place, f"{heading}: {levels.REASON}", where.height, where[LINE][0], str(where[heading][0]), kind="quiet"
             )
-        if self._dated is not None and no_field(frame.schema[self._dated.name]):
-            # `lastPosition` of readsb is an object and no time.
-            self._dated = None
-        part = self._with_age(self._with_unread(self._callsigns.as_tracks(part), frame), frame)
+        part = self._times.with_age(self._with_unread(self._callsigns.as_tracks(part), frame), frame)
         # A column of states may hold objects of them, too.
         may_hold = [name for name in (*self._mapping.unused, *(name for name, _ in self._mapping.statements)) if name in frame.columns]
         within = within_objects(frame.select(may_hold))
@@ -190,16 +177,6 @@ class Values:
             if values:
                 part = part.with_columns(pl.DataFrame(values).max_horizontal().alias(quantity))
         return part
-
-    def _with_age(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
-        """The age that a row states of its position, where no column states the time of the position."""
-        stated = [(name, kind) for name, kind in self._mapping.statements if not no_field(frame.schema[name])]
-        ages = {name: unit_s for name, kind in stated for of, unit_s in AGES if kind is of}
-        if self._dated is not None or not ages:
-            return part
-        stated_s = [(frame[name].cast(pl.Float64, strict=False).fill_nan(None) * unit_s).alias(name) for name, unit_s in ages.items()]
-        oldest_s = pl.DataFrame(stated_s).max_horizontal()
-        return part.with_columns(pl.select(pl.when(oldest_s.is_between(0.0, _OLDEST_S)).then(oldest_s)).to_series().alias(_AGE))
 
     def _count_uncompared(self, frame: pl.DataFrame, compared: Mapping[str, pl.Series]) -> None:
         """Count the texts of columns that are compared as lengths; an empty field states nothing."""
@@ -253,9 +230,8 @@ class Values:
 
     def _raw(self, frame: pl.DataFrame) -> list[pl.Series]:
         self._facts.append(TimeFacts.of(frame, self._mapping.times))
-        dated = [] if self._dated is None else [self._dated]
-        self._facts_dated += [TimeFacts.of(frame, [column]) for column in dated]
-        columns = {column.name: frame[column.name] for column in (*self._mapping.times, *dated)} | self._further.times(frame)
+        columns = {column.name: frame[column.name] for column in self._mapping.times}
+        columns |= self._times.written(frame) | self._further.times(frame)
         self._dtypes |= {name: values.dtype for name, values in columns.items()}
         return [values.alias(_RAW + name) for name, values in columns.items()]
 
@@ -286,12 +262,7 @@ class Values:
         self.position_doubts += self._units.doubts
         self.position_doubts += [*self._further.doubts(), *self._hemispheres.doubts()]
         self.notes += self._further.notes()
-        if self._dated is not None:
-            try:
-                self._unit_dated = self._understood([self._dated], self._facts_dated)
-            except FormatError as e:
-                self.position_doubts.append(f"{name}: “{self._dated.name}” says when positions were valid and is not read: {e.message}")
-                self._dated = None
+        self.position_doubts += self._times.understand(self._dtypes, self.notes)
         self._further.understand(self._dtypes)
         self._understand_speed()
         decided = "" if self._speed is None or not self._speed.unit else self._speed.name
@@ -299,7 +270,7 @@ class Values:
         if tuple(self._required) == POSITION and unused:
             self.notes.append(f"{name}: columns not used: {_few(unused)}")
         # The numbers of all rows are needed no more.
-        self._facts, self._facts_dated = [], []
+        self._facts = []
 
     def _understand_altitude(self) -> None:
         if self._altitude is None or (head := self._altitude.head()).is_empty():
@@ -347,10 +318,7 @@ class Values:
         self.position_doubts += self._further.against(out["time_ns"], raw)
         if self._altitude is not None and "altitude_m" in out.columns:
             out = self._altitude.made(out)
-        out = self._positions_dated(out, raw).drop(pl.selectors.starts_with(_RAW))
-        if _AGE in out.columns:
-            valid_ns = pl.col("time_ns") - (pl.col(_AGE) * 1e9).round().cast(pl.Int64)
-            out = out.with_columns(valid_ns.alias(POSITION_TIME)).drop(_AGE)
+        out = self._times.dated(out, raw, self.tally).drop(pl.selectors.starts_with(_RAW))
         if self._speed is not None:
             if self._speed.unit:
                 factor = UNITS["mps"][self._speed.unit]
@@ -383,35 +351,10 @@ class Values:
             pl.when(nowhere).then(pl.lit("0, 0")).otherwise(pl.col(_EXAMPLE)).alias(_EXAMPLE),
         )
 
-    def _positions_dated(self, out: pl.DataFrame, raw: pl.DataFrame) -> pl.DataFrame:
-        """When each position was valid, where a column says so; a time that is none, or later than its row, is counted and not used."""
-        if self._dated is None:
-            return out
-        name = self._dated.name
-        valid, reason = converted(raw, [self._dated], self._unit_dated)
-        late = (valid > out["time_ns"] + _AHEAD_NS).fill_null(value=False)
-        reason = pl.select(pl.when(late).then(pl.lit(_LATE)).otherwise(reason)).to_series()
-        for text in reason.drop_nulls().filter(reason.drop_nulls() != "empty").unique(maintain_order=True):
-            at = (reason == text).fill_null(value=False)
-            # Without it the row's own time serves: that makes no row malformed.
-            words = f"{name}: {text}; row used without it"
-            self.tally.add(DATED, words, int(at.sum()), out.filter(at)[LINE][0], str(raw.filter(at)[name][0]), kind="quiet")
-            self._n_undated += 0 if text == _LATE else int(at.sum())
-        self._n_dated += int(valid.count())
-        out = out.with_columns(pl.select(pl.when(reason.is_null()).then(valid)).to_series().alias(POSITION_TIME))
-        # One of the two clocks is wrong, and nothing says which.
-        ahead_s = (valid - out["time_ns"]).cast(pl.Float64) * 1e-9
-        of_row = pl.format("{} s later than its row", ahead_s.round(1))
-        wrong = pl.select(pl.when(ahead_s > STALE_AFTER_S).then(of_row)).to_series()
-        return stated.with_statements(out, [(name, "invalid", Stated(wrong, []))]) if wrong.count() else out
-
     def doubts(self) -> list[str]:
         """Why nothing can be shown of the positions, after the last rows."""
         self.position_doubts += [each for each in self._no_speeds.doubts(self._path) if each not in self.position_doubts]
-        if self._dated is None or self._n_undated <= self._n_dated:
-            return self.position_doubts
-        unread = f"{self._n_undated} of its {counted(self._n_undated + self._n_dated, 'field')} cannot be read as a time"
-        return [*self.position_doubts, f"{self._path.name}: “{self._dated.name}” says when positions were valid, and {unread}"]
+        return [*self.position_doubts, *self._times.doubts()]
 
     def described(self) -> dict[str, str]:
         """Quantity to the column that it was read from and its unit."""
