@@ -12,7 +12,7 @@ import polars as pl
 from navbound import path
 from navbound.errors import FormatError, InputError
 from navbound.read.source import load
-from navbound.read.tables.table import table
+from navbound.read.tables.load import table
 from navbound.records.run import Waypoint
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ import polars as pl
 from navbound.read.columns.column import NO_COLUMN
 from navbound.read.columns.hemispheres import STATED, of_name
 from navbound.read.columns.naming import declare, name_parts, plain_form, words
-from navbound.read.columns.place_names import AXES, OF_HEMISPHERE, Axis, axes_of, is_no_vehicle, sides
+from navbound.read.columns.place_names import AXES, OF_HEMISPHERE, Axis, Sides, axes_of, is_no_vehicle, sides
 from navbound.read.tables.cells import in_one_text
 
 if TYPE_CHECKING:
@@ -81,30 +81,31 @@ class Hemispheres:
                 self._see(column, part)
 
     def _see(self, column: pl.Series, part: pl.DataFrame) -> None:
-        of = of_name(column.name)
+        of, read = of_name(column.name), dict[str, Sides]()
         if column.dtype in (pl.String, pl.List(pl.String)):
             texts = in_one_text(column)
-            texts = texts.set(texts.str.strip_chars() == "", None)
-            if texts.n_unique() > _MOST_WORDS:
+            written = texts.unique().drop_nulls()
+            if len(written) > _MOST_WORDS:
                 return
-            read = {text: sides(text) for text in texts.drop_nulls().unique()}
-            signs = {axis: _coded(texts, {text: side[k] for text, side in read.items()}) for k, axis in enumerate(AXES)}
-            numbers = texts.cast(pl.Float64, strict=False)
-        elif column.dtype.is_numeric() or column.dtype == pl.Boolean:
-            texts = numbers = column.cast(pl.Float64)
-            signs = dict.fromkeys(AXES, pl.Series([None] * len(column), dtype=pl.Int8))
-        else:
+            read = {text: sides(text) for text in written}
+        elif of is None or not (column.dtype.is_numeric() or column.dtype == pl.Boolean):
             return
+        else:
+            texts = column.cast(pl.Float64)
+        if of is None and not any(side.lat or side.lon for side in read.values()):
+            return
+        signs = {axis: _coded(texts, {text: side[k] for text, side in read.items()}) for k, axis in enumerate(AXES)}
+        numbers = texts.cast(pl.Float64, strict=False)
         if of is not None:
             signs[of] = pl.select(pl.coalesce(signs[of], _coded(numbers, _CODES[of]))).to_series()
-        if of is not None or any(sign.count() for sign in signs.values()):
-            seen = self._seen.setdefault(column.name, _Seen())
-            seen.n_unclear += int(numbers.is_in(list(_UNCLEAR)).sum())
-            self._count(seen, texts, signs, part)
+        seen = self._seen.setdefault(column.name, _Seen())
+        seen.n_unclear += int(numbers.is_in(list(_UNCLEAR)).sum())
+        blank = sum(int((texts == text).sum()) for text in read if not text.strip())
+        self._count(seen, len(texts) - texts.null_count() - blank, signs, part)
 
     @staticmethod
-    def _count(seen: _Seen, written: pl.Series, signs: dict[Axis, pl.Series], part: pl.DataFrame) -> None:
-        seen.n_written += written.len() - written.null_count()
+    def _count(seen: _Seen, n_written: int, signs: dict[Axis, pl.Series], part: pl.DataFrame) -> None:
+        seen.n_written += n_written
         for axis, sign in signs.items():
             angle = part[axis]
             side = pl.select(pl.when(angle.abs() > _NO_SIDE_RAD).then(angle.sign())).to_series()
@@ -170,6 +171,8 @@ class Hemispheres:
 
 
 def _coded(column: pl.Series, signs: Mapping[Any, int | None]) -> pl.Series:
+    if not signs:
+        return pl.Series([None] * len(column), dtype=pl.Int8)
     return column.replace_strict(signs, default=None, return_dtype=pl.Int8)
 
 

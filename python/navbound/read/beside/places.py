@@ -176,7 +176,7 @@ class OtherPlaces:
 
     def __init__(self, places: Sequence[Place], declared: Iterable[str] = ()) -> None:
         self._places, self._declared = list(places), frozenset(declared)
-        self._forms: dict[tuple[Place, str], Form] = {}
+        self._forms = dict[Place, dict[str, Form]]()
         self._own = Form()
 
     def see(self, part: pl.DataFrame, frame: pl.DataFrame, within: pl.DataFrame) -> None:
@@ -188,20 +188,22 @@ class OtherPlaces:
         own = part.select(LAT, LON).to_numpy().astype(np.float64)
         here_m = np.where(np.isfinite(own).all(axis=1), 0.0, np.nan)
         self._own = self._own.with_rows(own[:, 0], own[:, 1], here_m, len(own))
+        names = set(frame.columns)
         for place in self._places:
-            if not set(place.names) <= set(frame.columns):
+            if not names.issuperset(place.names):
                 continue
             n, forms = _read(place, frame, own)
+            of_place = self._forms.setdefault(place, {})
             for form, there in forms:
-                before = self._forms.get((place, form), Form())
+                before = of_place.get(form, Form())
                 if there is None:
-                    self._forms[place, form] = before._replace(n=before.n + n)
+                    of_place[form] = before._replace(n=before.n + n)
                 else:
-                    self._forms[place, form] = before.with_rows(there[:, 0], there[:, 1], _apart_m(place, own, there), n)
+                    of_place[form] = before.with_rows(there[:, 0], there[:, 1], _apart_m(place, own, there), n)
 
     def _nearest(self, place: Place) -> Form | None:
         """In the form that brings it nearest, of those that read its numbers."""
-        forms = [form for (of, _), form in self._forms.items() if of == place and form.n_read > _READ_SHARE * form.n]
+        forms = [form for form in self._forms.get(place, {}).values() if form.n_read > _READ_SHARE * form.n]
         return min(forms, key=lambda form: form.apart_m, default=None)
 
     def far(self) -> Iterator[tuple[Place, float]]:

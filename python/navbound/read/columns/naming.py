@@ -27,7 +27,7 @@ _NORTH_OR_SOUTH = "n/s"
 """A name that is no quantity in seconds."""
 
 
-@functools.lru_cache(maxsize=1024)
+@functools.lru_cache(maxsize=16_384)
 def plain_form(name: str) -> tuple[str, str | None]:
     """``Latitude (deg)`` and ``Latitude / deg`` to ``latitude`` and ``deg``; of a name that stands twice both columns are it."""
     stem, unit = re.sub(r"#\d{1,3}$", "", name).strip(), None
@@ -51,6 +51,7 @@ _ABOVE_ELLIPSOID = frozenset(("wgs84", "wgs-84", "wgs 84", "ellipsoid", "ellipso
 _HEIGHTS = frozenset(("altitude", "alt", "height", "h"))
 
 
+@functools.lru_cache(maxsize=16_384)
 def apart_at_capitals(name: str) -> str:
     """``latDeg`` to ``lat_Deg``."""
     return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name)

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from navbound.errors import FormatError
-from navbound.read.tables.table import apart, require_few, words_of
+from navbound.read.objects.structures import apart
+from navbound.read.tables.load import words_of
+from navbound.read.tables.table import require_few
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -20,9 +20,10 @@ from navbound.read.columns.column import POSITION, Assignment
 from navbound.read.columns.lacking import truth_as_position
 from navbound.read.source import Source, load
 from navbound.read.tables.dates import of_day
+from navbound.read.tables.load import table
 from navbound.read.tables.order import Late, one_row_a_time
 from navbound.read.tables.stated_units import require_same_in_remarks
-from navbound.read.tables.table import LINE, Table, table
+from navbound.read.tables.table import LINE, Table
 from navbound.read.tables.values import SHOWN, Values, texts
 from navbound.records.material import LEFT_OUT
 from navbound.table.columns import COVARIANCE

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import io
-import json
 import re
 from collections import Counter
 from dataclasses import dataclass, replace
-from functools import reduce
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING
 
 import polars as pl
 
@@ -16,16 +14,11 @@ from navbound.errors import FormatError
 from navbound.read.checks.rejections import Rejections
 from navbound.read.columns.naming import declare
 from navbound.read.statements.texts import alarms
-from navbound.read.tables import readsb
-from navbound.read.tables.cells import DEEPEST, leaves, series
-from navbound.read.tables.memory import require_free
-from navbound.storage import packed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable
     from pathlib import Path
 
-    from navbound.read.source import Source
 
 LINE = "__line"
 
@@ -69,42 +62,9 @@ class Table:
         return [c for c in self.frame.columns if c != LINE]
 
 
-def table(source: Source, declared: Iterable[str] = ()) -> Table:
-    """Take a CSV, JSON or Parquet file apart.
-
-    Parameters
-    ----------
-    source : Source
-        The file.
-    declared : iterable of str
-        ``column`` or ``column:unit`` as a caller declares them; ``column#2`` is the second column of a name that stands twice.
-
-    Raises
-    ------
-    FormatError
-        The file is none of these, has no rows, or its columns differ in length.
-    """
-    content = _csv(source, declared) if source.kind == "csv" else {"json": _json, "parquet": _parquet}[source.kind](source)
-    if content.n_rows == 0:
-        raise FormatError(source.path, "no rows below the header")
-    content.rejections.refuse_if_too_many(content.n_rows)
-    return content
-
-
-def _csv(source: Source, declared: Iterable[str]) -> Table:
-    """Text lines with a separator; lines with another number of fields than the header are left out and counted."""
-    require_free(source, source.content.count(b"\n"))
-    lines = lines_of(source.text(), 1)
-    if lines.is_empty():
-        raise FormatError(source.path, "nothing but comments")
-    layout = layout_of(source.path, lines, declared)
-    rows = rows_of(source.path, layout, lines[1:])
-    rejections = Rejections(source.path)
-    if rows.bad is not None:
-        rejections.add(*rows.bad)
-    if rows.remarks is not None:
-        rejections.add(*rows.remarks, malformed=False)
-    return Table(rows.frame, rejections, rows.n_rows)
+def counted(frame: pl.DataFrame) -> pl.DataFrame:
+    """With the number of each row."""
+    return frame.with_columns(pl.int_range(1, pl.len() + 1).alias(LINE))
 
 
 _SENTENCE = r"[$!][A-Z0-9]{3,10},.*\*[0-9A-Fa-f]{2}\s*$"
@@ -331,170 +291,3 @@ def _names(path: Path, header: str, separator: str, declared: Iterable[str]) -> 
             names[at] = f"{name}#{place}"
     # Columns without a name (a data frame's index, what a person wrote beside, the separator at the end of a line) are seen by their place.
     return [name or ("" if f"column {k}" in names else f"column {k}") for k, name in enumerate(names, 1)]
-
-
-def _parquet(source: Source) -> Table:
-    try:
-        stated = pl.scan_parquet(io.BytesIO(source.content))
-        n_columns = len(stated.collect_schema())
-        require_few(source.path, n_columns)
-        n_rows = stated.select(pl.len()).collect().item()
-        # Eight bytes a field: a column of one value packs to nothing.
-        packed.require_room(source.path, len(source.content), 8 * n_rows * n_columns)
-        require_free(source, n_rows)
-        frame = apart(source.path, pl.read_parquet(io.BytesIO(source.content)))
-    except (pl.exceptions.PolarsError, OSError) as e:
-        raise FormatError(source.path, f"damaged Parquet file: {words_of(e)}") from e
-    return Table(_counted(frame), Rejections(source.path, "record"), frame.height)
-
-
-def _columns_of(path: Path, keys: Iterable[tuple[str, ...]]) -> dict[tuple[str, ...], str]:
-    """What a value in objects is called, by the keys that lead to it: by the last of them, unless another value has that name."""
-    keys = list(dict.fromkeys(keys))
-    n_of = Counter(each[-1] for each in keys)
-    names = {each: each[-1] if len(each) == 1 or n_of[each[-1]] == 1 else ".".join(each) for each in keys}
-    repeated = next((name for name, n in Counter(names.values()).items() if n > 1), None)
-    if repeated is not None:
-        raise FormatError(path, f"the key “{repeated}” is that of two columns", field=repeated)
-    return names
-
-
-def apart(path: Path, frame: pl.DataFrame) -> pl.DataFrame:
-    """What columns of structures hold, as columns of their own; words of a list of categories and bytes of a text are texts."""
-    leaves = [each for name, dtype in frame.schema.items() for each in _leaves((name,), dtype)]
-    if len(leaves) == frame.width and all(len(each) == 1 for each in leaves):
-        return _in_texts(frame)
-    names = _columns_of(path, leaves)
-    within = {each: reduce(lambda of, key: of.struct.field(key), each[1:], pl.col(each[0])) for each in leaves}
-    return _in_texts(frame.select(column.alias(names[each]) for each, column in within.items()))
-
-
-def _in_texts(frame: pl.DataFrame) -> pl.DataFrame:
-    of_texts = pl.selectors.categorical() | pl.selectors.enum() | pl.selectors.binary()
-    return frame.with_columns(of_texts.cast(pl.String, strict=False))
-
-
-def _leaves(keys: tuple[str, ...], dtype: pl.DataType) -> Iterator[tuple[str, ...]]:
-    if isinstance(dtype, pl.Struct) and len(keys) <= DEEPEST:
-        for part in dtype.fields:
-            yield from _leaves((*keys, part.name), cast("pl.DataType", part.dtype))
-    else:
-        yield keys
-
-
-def words_of(error: Exception) -> str:
-    """The first sentence of the table library, without what it advises its own users."""
-    return re.split(r"\n|\. |, (?:try|consider)|You might", str(error), maxsplit=1)[0].strip()[:160]
-
-
-def _json(source: Source) -> Table:
-    # A record is an object; a row of a table of columns, or of a trace, is some twenty fields between commas.
-    require_free(source, max(source.content.count(b"{"), source.content.count(b",") // 20))
-    try:
-        data = _json_of(source)
-    except RecursionError as e:
-        raise FormatError(source.path, "not a table: JSON nested too deeply") from e
-    rejections = Rejections(source.path, "record")
-    if isinstance(data, dict) and isinstance(data.get("trace"), list):
-        columns = readsb.columns_of(source, data)
-    elif readsb.is_snapshot(data):
-        columns = _records(source, readsb.records_of(source.path, [data]))
-    elif isinstance(data, dict):
-        rows = {tuple(values) for values in data.values() if isinstance(values, dict)}
-        if len(rows) > 1:
-            raise FormatError(source.path, "not a table: its columns name different rows")
-        columns = {name: _column(source, name, values) for name, values in data.items()}
-    else:
-        joined = isinstance(data, list) and bool(data) and readsb.is_snapshot(data[0])
-        columns = _records(source, readsb.records_of(source.path, data) if joined else data)
-    require_few(source.path, len(columns))
-    lengths = {len(values) for values in columns.values()}
-    if len(lengths) != 1:
-        raise FormatError(
-            source.path, f"not a table: columns of {' and '.join(map(str, sorted(lengths)))} items" if lengths else "no columns"
-        )
-    frame = pl.DataFrame({name: series(name, values) for name, values in columns.items()})
-    return Table(_counted(frame), rejections, frame.height)
-
-
-def _json_of(source: Source) -> Any:
-    """One value, or an object a line."""
-    decoder = json.JSONDecoder(object_pairs_hook=lambda pairs: _unrepeated(source, pairs), parse_int=_whole_number)
-    text = source.text()
-    try:
-        return _whole_characters(source, text, decoder.decode(text))
-    except json.JSONDecodeError as e:
-        if e.msg != "Extra data" or not text.lstrip().startswith("{"):
-            raise _refused(source, "not JSON", e, e.lineno, text[e.pos :]) from e
-    records, lines = list[Any](), text.rstrip().splitlines()
-    for number, line in enumerate(lines, 1):
-        if line.strip():
-            try:
-                records.append(decoder.decode(line))
-            except json.JSONDecodeError as e:
-                rest = line[e.pos :] if number == len(lines) else None
-                raise _refused(source, "not an object of JSON on each line", e, number, rest) from e
-    return _whole_characters(source, text, records)
-
-
-_CUT = r'\s*("([^"\\]|\\.)*\\?|-?[\d.eE+-]*|t(ru?)?|f(a(ls?)?)?|n(ul?)?|u\w*)\s*'
-"""What is left of a text that ends within a value, from where a parser refuses it."""
-
-
-def _refused(source: Source, what: str, error: json.JSONDecodeError, line: int, rest: str | None) -> FormatError:
-    """A text that ends too early is named as one, by its `rest` from the error on; anything else is what the parser says."""
-    if rest is None or error.msg == "Extra data" or not re.fullmatch(_CUT, rest):
-        return FormatError(source.path, f"{what}: {error.msg}", line)
-    where = f"the text ends in line {line}, after byte {len(source.content.rstrip())}, within an object, a list or a value"
-    return FormatError(source.path, f"{what}: {where}; the file looks cut: get it whole, or take the unfinished record out", line)
-
-
-_MOST_DIGITS = 20
-"""Those of an integer of 64 bits with its sign. [1]"""
-
-
-def _whole_number(text: str) -> int | float:
-    """An integer; one that no column of integers holds is a number as large, or infinite."""
-    return int(text) if len(text) <= _MOST_DIGITS else float(text)
-
-
-def _whole_characters(source: Source, text: str, content: Any) -> Any:
-    """Refuse half of a character (U+D800 to U+DFFF alone): it can be decoded, and not written anywhere."""
-    if re.search(r"\\u[dD][89a-fA-F]", text):
-        try:
-            json.dumps(content, ensure_ascii=False).encode()
-        except UnicodeEncodeError as e:
-            half = f"\\u{ord(e.object[e.start]):04x}"
-            raise FormatError(source.path, f"half of a character: {half} without the other half of its pair") from e
-    return content
-
-
-def _unrepeated(source: Source, pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Refuse an object that states a key twice: only one of the two would be read."""
-    content = dict(pairs)
-    if len(content) < len(pairs):
-        repeated = next(name for name, n in Counter(name for name, _ in pairs).items() if n > 1)
-        raise FormatError(source.path, f"an object has the key “{repeated}” twice", field=repeated)
-    return content
-
-
-def _counted(frame: pl.DataFrame) -> pl.DataFrame:
-    return frame.with_columns(pl.int_range(1, pl.len() + 1).alias(LINE))
-
-
-def _column(source: Source, name: str, values: Any) -> list[Any]:
-    """Take a column of the form {"0": v, "1": v} or [v, v]."""
-    if isinstance(values, dict):
-        return list(values.values())
-    if isinstance(values, list):
-        return values
-    raise FormatError(source.path, f"not a table: “{name}” is neither a column {{row: value}} nor a list", field=name)
-
-
-def _records(source: Source, data: list[Any]) -> dict[str, list[Any]]:
-    """Turn a list of objects into columns; a key that a record lacks is empty there."""
-    if not data or not all(isinstance(record, dict) for record in data):
-        raise FormatError(source.path, "not a table: a list of records {column: value} is needed")
-    records = [dict(leaves(record)) for record in data]
-    names = _columns_of(source.path, (keys for record in records for keys in record))
-    return {name: [record.get(keys) for record in records] for keys, name in names.items()}

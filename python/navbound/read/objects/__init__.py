@@ -1,0 +1,1 @@
+"""Objects and structures to columns: JSON, what decoders of aircraft write, and columns of structures."""
