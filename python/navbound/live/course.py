@@ -7,9 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-import polars as pl
 
-from navbound.live.recording import EPOCHS
 from navbound.live.zones import path_of
 
 if TYPE_CHECKING:
@@ -27,6 +25,10 @@ def points(settings: Settings, source: str) -> Points:
     """Latitude, longitude, course [rad] and RNP [m] along the path of the settings, else along a run's; none where neither is known."""
     if settings.path is not None:
         return _sampled(settings)
+    import polars as pl  # noqa: PLC0415  (workers of a fleet have no map, and a library of tables takes memory of each)
+
+    from navbound.live.recording import EPOCHS  # noqa: PLC0415
+
     run = Path(source) / EPOCHS
     if "://" in source or not run.is_file() or not set(_RECORDED) <= set(pl.read_parquet_schema(run)):
         return []

@@ -8,13 +8,13 @@ import math
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from navbound import _core, delays, rnp
+from navbound import _core, delays
 from navbound.errors import ConflictError, FormatError, InputError
 from navbound.live import statements, zones
 from navbound.live.zones import path_of
-from navbound.read.checks.plausible import Limits
-from navbound.read.covariance import NIC_RC_M, SIL_RISK, nacp_sigma_m
-from navbound.read.receivers import MESSAGES
+from navbound.read.categories import NIC_RC_M, SIL_RISK, nacp_sigma_m
+from navbound.read.checks.limits import Limits
+from navbound.read.formats import MESSAGES
 
 if TYPE_CHECKING:
     from pathlib import Path as FilePath
@@ -149,7 +149,8 @@ class Settings:
         """Silence after which monitoring is lost [s]."""
         if self.stale_after_s is not None:
             return self.stale_after_s
-        return rnp.Monitor(sample_period_s=self.sample_period_s, time_to_alert_s=math.inf).stale_after_s
+        chain = [self.sample_period_s, 0.0, 0.0, 0.0, 0.0, math.inf]
+        return _core.RnpMonitor(chain, self.raise_delay_s, self.clear_delay_s, self.clear_ratio, None).stale_after_s
 
     def text(self) -> str:
         """The record as JSON, one form for one content."""

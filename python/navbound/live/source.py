@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Protocol
 from urllib.parse import urlsplit
 
 from navbound.errors import FormatError, InputError
-from navbound.live.recording import Recording
 from navbound.live.settings import FORMATS
 from navbound.read import formats
 
@@ -334,7 +333,11 @@ def open_source(name: str, *, lines: bool = False, undated: bool = False, chunk:
     if "://" not in name:
         if undated:
             raise InputError("source", name, domain=f"{HEARD}: these messages have no time but that of their arrival, which a file lacks")
-        return Recording(Path(name), chunk) if Path(name).is_dir() else File(Path(name), chunk)
+        if not Path(name).is_dir():
+            return File(Path(name), chunk)
+        from navbound.live.recording import Recording  # noqa: PLC0415  (workers read no run, and a library of tables takes memory of each)
+
+        return Recording(Path(name), chunk)
     try:
         parts = urlsplit(name)
         host, port = parts.hostname, parts.port

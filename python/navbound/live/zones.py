@@ -23,8 +23,6 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 from navbound.errors import FormatError
-from navbound.read.routes import load_route
-from navbound.read.runways import runway
 from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
@@ -167,6 +165,9 @@ def _only(file: FilePath, where: str, row: dict[str, Any], known: set[str]) -> N
 
 def path_of(name: str) -> Path:
     """The path of a runway's name or a route file."""
+    from navbound.read.routes import load_route  # noqa: PLC0415  (workers without a path need no tables)
+    from navbound.read.runways import runway  # noqa: PLC0415
+
     if FilePath(name).suffix.lower() in {".toml", ".csv"}:
         return load_route(name).path
     return runway(name).centreline

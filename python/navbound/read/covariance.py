@@ -9,131 +9,29 @@ from typing import TYPE_CHECKING, Literal
 import polars as pl
 
 from navbound.errors import InputError
+from navbound.read.categories import (
+    NACP_EPU_M,
+    NIC_RC_M,
+    NUCP_EPU_M,
+    NUCP_RC_M,
+    PIC_RC_M,
+    SIL_RISK,
+    axis_sigma_m,
+    circular_sigma,
+    nacp_sigma_m,
+)
 from navbound.read.checks.stated import CONTAINMENT, WORSE, worse_than_covariance
 from navbound.read.statements.names import speaks_of_accuracy, speaks_of_level
 from navbound.table.columns import COVARIANCE, HORIZONTAL
-from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-NACP_EPU_M = {
-    11: 3.0,
-    10: 10.0,
-    9: 30.0,
-    8: 0.05 * METRES_PER_NM,
-    7: 0.1 * METRES_PER_NM,
-    6: 0.3 * METRES_PER_NM,
-    5: 0.5 * METRES_PER_NM,
-    4: METRES_PER_NM,
-    3: 2 * METRES_PER_NM,
-    2: 4 * METRES_PER_NM,
-    1: 10 * METRES_PER_NM,
-}
-"""Navigation accuracy category for position to the upper limit of the 95 % horizontal radius [m]; 0 is "unknown".
-
-Provenance: inferred (RTCA DO-260B / EUROCAE ED-102A, coding of NACp); the document was not read.
-"""
-
-NIC_RC_M = {
-    11: 7.5,
-    10: 25.0,
-    9: 75.0,
-    8: 0.1 * METRES_PER_NM,
-    7: 0.2 * METRES_PER_NM,
-    6: 0.6 * METRES_PER_NM,
-    5: METRES_PER_NM,
-    4: 2 * METRES_PER_NM,
-    3: 4 * METRES_PER_NM,
-    2: 8 * METRES_PER_NM,
-    1: 20 * METRES_PER_NM,
-}
-"""Navigation integrity category to the containment radius [m]; 0 is "unknown". For 6 the largest of its three radii.
-
-Provenance: inferred (RTCA DO-260B / EUROCAE ED-102A, coding of NIC); the document was not read.
-"""
-
-NUCP_EPU_M = {
-    9: 3.0,
-    8: 10.0,
-    7: 0.05 * METRES_PER_NM,
-    6: 0.1 * METRES_PER_NM,
-    5: 0.25 * METRES_PER_NM,
-    4: 0.5 * METRES_PER_NM,
-    3: METRES_PER_NM,
-    2: 5 * METRES_PER_NM,
-    1: 10 * METRES_PER_NM,
-}
-"""Navigation uncertainty category for position of version 0 to the upper limit of the 95 % horizontal radius [m]; 0 is "unknown".
-
-Provenance: inferred (RTCA DO-260 / ICAO Doc 9871, coding of NUCp); the documents were not read.
-"""
-
-NUCP_RC_M = {
-    9: 7.5,
-    8: 25.0,
-    7: 0.1 * METRES_PER_NM,
-    6: 0.2 * METRES_PER_NM,
-    5: 0.5 * METRES_PER_NM,
-    4: METRES_PER_NM,
-    3: 2 * METRES_PER_NM,
-    2: 10 * METRES_PER_NM,
-    1: 20 * METRES_PER_NM,
-}
-"""The same category to the horizontal protection level [m]; 0 is "unknown". Of a message on the ground 6 has none, which no table says.
-
-Provenance: as `NUCP_EPU_M`.
-"""
-
-PIC_RC_M = {
-    14: 7.5,
-    13: 25.0,
-    12: 75.0,
-    11: 0.1 * METRES_PER_NM,
-    10: 0.2 * METRES_PER_NM,
-    9: 0.3 * METRES_PER_NM,
-    8: 0.5 * METRES_PER_NM,
-    7: 0.6 * METRES_PER_NM,
-    6: METRES_PER_NM,
-    5: 2 * METRES_PER_NM,
-    4: 4 * METRES_PER_NM,
-    3: 8 * METRES_PER_NM,
-    2: 10 * METRES_PER_NM,
-    1: 20 * METRES_PER_NM,
-}
-"""Position integrity category of surveillance reports to the containment radius [m]; 0 is "unknown".
-
-Provenance: inferred (EUROCONTROL ASTERIX category 021, item 090); the document was not read, the radii are those of public decoders of it.
-"""
-
-SIL_RISK = {3: 1e-7, 2: 1e-5, 1: 1e-3}
-"""Source integrity level to the risk, an hour or a sample, that the error exceeds the containment radius; 0 is "unknown".
-
-Provenance: inferred (RTCA DO-260B / EUROCAE ED-102A, coding of SIL; read in the 1090 MHz Riddle); the document was not read.
-"""
+    from collections.abc import Sequence
 
 RC_RISK = SIL_RISK[3]
 """Risk taken for a containment radius: source integrity level 3. Provenance: inferred."""
 
 HOLD_S = 300.0
 """How long a quality indicator counts after it was received. Provenance: ours."""
-
-
-def nacp_sigma_m() -> dict[int, float]:
-    """Give sigma of one axis for every NACp that has one.
-
-    An EPU is less than the limit that its NACp stands for: the 95 % circle of this sigma, which is right to 1e-12, is so, too.
-    """
-    return _sigma_m(NACP_EPU_M)
-
-
-def _sigma_m(limits_m: Mapping[int, float]) -> dict[int, float]:
-    return {category: limit_m * (1.0 - 1e-11) * circular_sigma(0.05) for category, limit_m in limits_m.items()}
-
-
-def circular_sigma(risk: float) -> float:
-    """Give sigma of one axis as a share of the radius that a circular normal error exceeds with `risk`: 1 / sqrt(-2 ln risk)."""
-    return 1.0 / math.sqrt(-2.0 * math.log(risk))
 
 
 Origin = Literal["file", "file_axes", "epu", "nac_p", "nuc_p", "containment_radius", "typed", "none"]
@@ -332,7 +230,7 @@ def _coded(epochs: pl.DataFrame, have: set[str]) -> Claimed:
         )
         return _circle(epochs, radius * k_rc, words, "containment_radius")
     if "nuc_p" in have:
-        sigma = _in_force("nuc_p").replace_strict(_sigma_m(NUCP_EPU_M), default=None, return_dtype=pl.Float64)
+        sigma = _in_force("nuc_p").replace_strict(axis_sigma_m(NUCP_EPU_M), default=None, return_dtype=pl.Float64)
         words = (
             f"Covariance: circular, sigma = EPU / {1 / k95:.4f}, EPU being the upper limit of the 95 % radius that NUCp stands for "
             f"(coding of DO-260, version 0, which was not read); an indicator counts for {HOLD_S:g} s after it was received."

@@ -12,7 +12,6 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from navbound import _core
-from navbound.read import receivers
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -53,9 +52,19 @@ class Format:
     recognises: Callable[[bytes], bool] | None = None
 
 
+MESSAGES: dict[str, str] = dict(_core.position_logs())
+"""Formats of receivers' logs, and the messages of each that positions are read from."""
+
+
+def _positions(source: Source, name: str) -> Log:
+    from navbound.read import receivers  # noqa: PLC0415  (who only recognises a format needs no tables)
+
+    return receivers.read(source, name=name)
+
+
 def _of_core() -> Iterator[Format]:
     for id_, title, holds, sign, instead in _core.formats():
-        log = partial(receivers.read, name=id_) if id_ in receivers.MESSAGES else None
+        log = partial(_positions, name=id_) if id_ in MESSAGES else None
         yield Format(id_, title, tuple(holds), sign, instead, log)
 
 

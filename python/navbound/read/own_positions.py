@@ -10,12 +10,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import polars as pl
-
 from navbound.read.columns.naming import words
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
 
 
 OWN_BEGINS = "adsb_"
@@ -76,7 +74,8 @@ HEARD = words("hex seen")
 """A table with both is one of dump1090's or readsb's aircraft: `seen` is how long ago the aircraft was heard last, and no position of it is
 newer. [s]"""
 
-_OF_PLACE = ("lat", "lon")
+OF_PLACE = ("lat", "lon")
+"""Names in the lists of a position."""
 CLAIMS = ("nac_p", "nic", "rc", "sil")
 """Names in the lists of accuracies and integrities."""
 
@@ -89,42 +88,13 @@ def names_position(values: object) -> bool:
     """Whether a list of values that others computed has the position, or is no list."""
     if not values:
         return False
-    return not isinstance(values, list) or any(name in values for name in _OF_PLACE)
+    return not isinstance(values, list) or any(name in values for name in OF_PLACE)
 
 
 def is_of_others(claim: str, beside: Mapping[str, object]) -> bool:
     """Whether a list of values that others gave has an accuracy or an integrity of an aircraft."""
     lists = (beside.get(name) for name in _OF_READSB)
     return any(isinstance(values, list) and claim in values for values in lists)
-
-
-def without_lists(frame: pl.DataFrame, names: Iterable[str]) -> pl.DataFrame:
-    """The named columns with whether a list of each row has the position; what is no list stays as it is.
-
-    An accuracy or an integrity that a list has is none of the aircraft's: the row does not state it.
-    """
-    replaced, of_others = list[pl.Expr](), {name: list[pl.Expr]() for name in CLAIMS if name in frame.columns}
-    for name in names:
-        dtype = frame.schema[name]
-        if isinstance(dtype, pl.List) and not dtype.inner.is_nested():
-            listed = pl.col(name).cast(pl.List(pl.String))
-            has = pl.any_horizontal(listed.list.contains(pl.lit(each)) for each in _OF_PLACE)
-            # A row without a list names nothing.
-            replaced.append(has.fill_null(value=False).alias(name))
-            for claim, listing in of_others.items():
-                listing.append(listed.list.contains(pl.lit(claim)).fill_null(value=False))
-        elif dtype == pl.String:
-            text, is_list = pl.col(name), pl.col(name).str.strip_chars().str.starts_with("[").fill_null(value=False)
-            has = text.str.contains(_listing("|".join(_OF_PLACE))).cast(pl.String)
-            replaced.append(pl.when(is_list).then(has).otherwise(text).alias(name))
-            for claim, listing in of_others.items():
-                listing.append(is_list & text.str.contains(_listing(claim)).fill_null(value=False))
-    own = [pl.when(~pl.any_horizontal(listing)).then(pl.col(claim)).alias(claim) for claim, listing in of_others.items() if listing]
-    return frame.with_columns(*replaced, *own)
-
-
-def _listing(words: str) -> str:
-    return rf"""["'\s\[,]({words})["'\s\],]"""
 
 
 class OfTrace:

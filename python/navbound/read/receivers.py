@@ -14,14 +14,12 @@ import polars as pl
 
 from navbound import _core, status
 from navbound.errors import FormatError
+from navbound.read.formats import MESSAGES
 from navbound.table.columns import COVARIANCE
 from navbound.words.plurals import agreeing, counted
 
 if TYPE_CHECKING:
     from navbound.read.source import Source
-
-MESSAGES: dict[str, str] = dict(_core.position_logs())
-"""Kind of log to the messages that hold its positions."""
 
 _REASONS = {
     "accuracy_without_position": "accuracy of no position (GST or GBS without a position of its time)",

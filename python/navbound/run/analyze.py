@@ -12,7 +12,8 @@ import polars as pl
 from navbound.errors import ConflictError, InputError
 from navbound.methods import EXTRACTION_LABEL, EXTRACTION_MARK
 from navbound.read.approaches import Gates
-from navbound.read.checks.plausible import Limits, check
+from navbound.read.checks.limits import Limits
+from navbound.read.checks.plausible import check
 from navbound.read.checks.repeats import left_out, separate
 from navbound.read.covariance import Claimed, claim, words_beside
 from navbound.read.motion.axes import axes_of

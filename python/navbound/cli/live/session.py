@@ -408,7 +408,7 @@ def compare(a: Annotated[Path, typer.Argument(help="Folder of a session.")], b: 
 
 def _unread(format_id: str) -> str:
     """What a source has to send that is read as this format; a source in which nothing was read may be of another one."""
-    from navbound.read.receivers import MESSAGES  # noqa: PLC0415
+    from navbound.read.formats import MESSAGES  # noqa: PLC0415
 
     needs = f"; positions are read of {MESSAGES[format_id]}" if format_id in MESSAGES else ""
     if format_id == "nmea":

@@ -12,7 +12,7 @@ import polars as pl
 
 from navbound.errors import FormatError
 from navbound.read.beside.places import OtherPlaces
-from navbound.read.checks.plausible import Limits
+from navbound.read.checks.limits import Limits
 from navbound.read.checks.repeats import SAME_PLACE_M
 from navbound.read.columns.column import NO_COLUMN, POSITION
 from navbound.read.columns.naming import declare

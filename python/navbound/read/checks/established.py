@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
+from navbound.read.checks.limits import Limits
 from navbound.read.checks.places import east_north_m
-from navbound.read.checks.plausible import Limits, unreachable
+from navbound.read.checks.plausible import unreachable
 from navbound.records.truth import TruthDoubts
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import numpy as np
 import polars as pl
 
 from navbound import _core
-from navbound.read.checks.plausible import Limits
+from navbound.read.checks.limits import Limits
 from navbound.status import USABLE
 
 COLUMNS = ("track", "time_ns", "status", "est_lat_rad", "est_lon_rad", "cov_ee_m2", "cov_nn_m2")

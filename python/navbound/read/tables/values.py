@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from navbound.errors import UNSEEN, FormatError
-from navbound.read import own_positions
 from navbound.read.beside.further import Further, Speeds
 from navbound.read.beside.hemispheres import Hemispheres
 from navbound.read.beside.no_speed import NoSpeeds
@@ -22,6 +21,7 @@ from navbound.read.columns.assign import is_header
 from navbound.read.columns.column import POSITION, Assignment, Column
 from navbound.read.quantities import QUANTITY, UNITS
 from navbound.read.statements.kinds import BY_OTHERS
+from navbound.read.statements.lists import without_lists
 from navbound.read.statements.rows import Stating
 from navbound.read.tables.cells import (
     MISSING,
@@ -106,7 +106,7 @@ class Values:
         FormatError
             A column that holds neither numbers nor text.
         """
-        frame = own_positions.without_lists(frame, [name for name, kind in self._mapping.statements if kind is BY_OTHERS])
+        frame = without_lists(frame, [name for name, kind in self._mapping.statements if kind is BY_OTHERS])
         self._check_kinds(frame)
         frame = self._without_names_and_units(frame)
         out, against, reasons = {LINE: frame[LINE]}, list[tuple[str, pl.Series]](), dict[str, pl.Series]()

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import polars as pl
 
+from navbound.read.checks.limits import Limits
 from navbound.read.checks.neighbours import Neighbours
-from navbound.read.checks.plausible import Limits
 from navbound.read.checks.stated import ALERT, CONTAINMENT, ERROR, WORSE
 from navbound.read.statements.texts import WORDS_SHOWN
 from navbound.status import USABLE

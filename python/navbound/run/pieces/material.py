@@ -10,7 +10,8 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, status
-from navbound.read.checks.plausible import Checker, Limits, Plausibility
+from navbound.read.checks.limits import Limits
+from navbound.read.checks.plausible import Checker, Plausibility
 from navbound.read.covariance import Claimed, Claims
 from navbound.read.motion.axes import Axes
 from navbound.read.motion.speeds import Speeds

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     import polars as pl
 
-    from navbound.read.checks.plausible import Limits
+    from navbound.read.checks.limits import Limits
     from navbound.read.pieces import PiecedReading
     from navbound.read.tables.epochs import Reading
     from navbound.read.truth import Truth
