@@ -130,10 +130,30 @@ def test_letters_under_any_name_contradict_a_coordinate_without_a_sign(
         assert (run.epochs["est_lon_rad"] > 0.0).all()
 
 
-def test_letters_of_both_coordinates_in_one_column_contradict_both(tmp_path: Path) -> None:
-    verdict = judged(table(tmp_path / "a.csv", {"hemisphere": "SW"}))
+@pytest.mark.parametrize("name", ["hemisphere", "hemispheres", "quadrant"])
+@pytest.mark.parametrize(("south_west", "north_east"), [("SW", "NE"), ("South-West", "NORTHEAST"), ("S, W", "N/E")])
+def test_letters_of_both_coordinates_in_one_column_contradict_both(tmp_path: Path, name: str, south_west: str, north_east: str) -> None:
+    verdict = judged(table(tmp_path / "a.csv", {name: south_west.replace(",", ";")}))
     assert (verdict.id, len(verdict.position_doubts)) == ("not_shown", 2)
-    assert judged(table(tmp_path / "b.csv", {"hemisphere": "NE"})).id == "inside"
+    assert judged(table(tmp_path / "b.csv", {name: north_east})).id == "inside"
+
+
+def test_letters_of_one_coordinate_leave_those_of_the_other_compared(tmp_path: Path) -> None:
+    """One is known by its name, or declared; the other column still says that its coordinate is in the west."""
+    known = table(tmp_path / "a.csv", {"N/S": "S", "x2": "W"})
+    assert any("“x2” says another hemisphere than “lon”" in each for each in judged(known).position_doubts)
+    unknown = table(tmp_path / "b.csv", {"x1": "S", "x2": "W"})
+    assert len(judged(unknown).position_doubts) == 2
+    assert judged(unknown, lat_hemisphere="x1").id == "not_shown"
+    assert judged(unknown, lon_hemisphere="x2").id == "not_shown"
+    assert judged(unknown, lat_hemisphere="x1", lon_hemisphere="x2").id == "inside"
+
+
+@pytest.mark.parametrize("code", [-1, 1, 83])
+def test_numbers_in_a_column_of_hemispheres_are_declared(tmp_path: Path, code: int) -> None:
+    assert judged(table(tmp_path / "a.csv", {"hemisphere": code})).id == "not_shown"
+    assert judged(table(tmp_path / "b.csv", {"lat_hem": code, "lon_hem": code})).id == "not_shown"
+    assert judged(table(tmp_path / "c.csv", {"hemisphere": code}, lat=-33.5, lon=-70.6)).id == "inside"
 
 
 @pytest.mark.parametrize(
@@ -141,6 +161,8 @@ def test_letters_of_both_coordinates_in_one_column_contradict_both(tmp_path: Pat
     [
         {"wind_dir": "S"},
         {"on_ground": "N"},
+        {"wake": "W"},
+        {"phase": "S"},
         {"heading": lambda k: ["N", "NE", "SW", "S", "W"][k % 5]},
         {"dest_lat": 12.0, "dest_N/S": "S", "dest_lon": 13.0, "dest_E/W": "W"},
         {"ns": lambda k: 7 + k % 2},
@@ -219,6 +241,14 @@ def test_a_column_of_letters_that_is_declared_and_absent_is_refused(tmp_path: Pa
 def test_a_pair_under_a_name_of_both_coordinates_is_another_place(tmp_path: Path, name: str, off_deg: float) -> None:
     columns: dict[str, object] = {name: lambda k: f"{33.5 + off_deg + k * 1e-4:.5f} 70.6"}
     assert (judged(table(tmp_path / "a.csv", columns)).id == "inside") == (off_deg == 0.0)
+
+
+@pytest.mark.parametrize("off_deg", [0.0, 0.5])
+def test_a_pair_of_integers_is_another_place(tmp_path: Path, off_deg: float) -> None:
+    frame = pl.read_csv(table(tmp_path / "a.csv", {}))
+    pairs = [[round((lat + off_deg) * 1e7), round(lon * 1e7)] for lat, lon in frame.select("lat", "lon").iter_rows()]
+    frame.with_columns(gps_lat_lon=pl.Series(pairs)).write_parquet(tmp_path / "a.parquet")
+    assert (judged(tmp_path / "a.parquet").id == "inside") == (off_deg == 0.0)
 
 
 @pytest.mark.parametrize("off_deg", [0.0, 0.5])

@@ -13,6 +13,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+import navbound
 from navbound import FormatError, InputError, NavboundError
 from navbound.read import Reading, read
 from navbound.read.pieces.reading import read_pieces
@@ -471,3 +472,34 @@ def test_sentences_without_a_position_are_no_table(tmp_path: Path) -> None:
     (tmp_path / "a.txt").write_text("$LXWP0,Y,222.3,1665.5,0.03,0.03,0.03*4E\r\n" * 20)
     with pytest.raises(FormatError, match="sentences such as “\\$LXWP0"):
         read(tmp_path / "a.txt")
+
+
+def test_an_accuracy_that_a_row_of_units_gives_in_degrees_is_no_length(tmp_path: Path) -> None:
+    """FlySight writes `cAcc`, the accuracy of the course."""
+    for name in ("cAcc", "heading_accuracy_of_receiver", "accuracy_x1"):
+        rows = [f"2017-06-03T11:58:{k:02d}Z,{48 + k * 1e-5:.5f},2.5,1200.0,170.0" for k in range(60)]
+        (tmp_path / "a.csv").write_text("\n".join(["time,lat,lon,hMSL," + name, ",(deg),(deg),(m),(deg)", *rows]) + "\n")
+        assert navbound.analyze(tmp_path / "a.csv", sigma_m=5.0).summary.verdict.n_stated_worse == 0
+
+
+def test_a_row_with_two_faults_is_malformed_once(tmp_path: Path) -> None:
+    """Six of 100 rows lack a place, and say nonsense of their speed: no more than the tenth that may be left out."""
+    rows = [f"{1_700_000_000 + k},{'bad' if k % 17 == 3 else 48 + k * 1e-4},2.5,{'?!' if k % 17 == 3 else 11.1}" for k in range(100)]
+    (tmp_path / "a.csv").write_text("\n".join(["time,lat,lon,speed_mps", *rows]) + "\n")
+    assert navbound.analyze(tmp_path / "a.csv", sigma_m=5.0).summary.verdict.n_missing == 6
+
+
+def test_a_decimal_comma_is_named(tmp_path: Path) -> None:
+    rows = [f"{1_700_000_000 + k};48,38{k:02d};2,5" for k in range(60)]
+    (tmp_path / "a.csv").write_text("\n".join(["time;lat;lon", *rows]) + "\n")
+    with pytest.raises(
+        FormatError, match=r"60 of 60 rows are malformed.*numbers with a decimal comma are not read: write them with a point"
+    ):
+        navbound.analyze(tmp_path / "a.csv", sigma_m=5.0)
+
+
+@pytest.mark.parametrize("names", [("BaseDateTime", "LAT", "LON"), ("timestamp", "location-lat", "location-long")])
+def test_names_of_ships_and_of_animals_are_known(tmp_path: Path, names: tuple[str, str, str]) -> None:
+    rows = [f"2023-05-01T12:00:{k:02d},{48 + k * 1e-5:.5f},2.5" for k in range(60)]
+    (tmp_path / "a.csv").write_text("\n".join([",".join(names), *rows]) + "\n")
+    assert navbound.analyze(tmp_path / "a.csv", sigma_m=5.0).summary.verdict.id == "inside"

@@ -119,3 +119,51 @@ def test_a_recording_that_begins_at_the_gate_is_decided_by_what_moves(tmp_path: 
 def test_positions_of_a_slow_vehicle_that_stand_beside_its_speed_show_nothing(tmp_path: Path) -> None:
     assert analysed(tmp_path, "speed", [12.0] * N, [0.1 * (-1) ** k for k in range(N)]).summary.verdict.id == "not_shown"
     assert analysed(tmp_path, "speed", [12.0] * N, [12.0] * N).summary.verdict.id == "inside"
+
+
+def circuit(tmp_path: Path, radius_m: float, mps: float, stated: float) -> Run:
+    """Laps of a circle, four rows a second, with a column `speed`."""
+    rows = ["time,lat,lon,speed"]
+    for k in range(4 * 120):
+        turned = mps * 0.25 * k / radius_m
+        lat, lon = (
+            48.0 + radius_m * math.sin(turned) / 111_195.0,
+            2.5 + radius_m * math.cos(turned) / 111_195.0 / math.cos(math.radians(48.0)),
+        )
+        rows.append(f"{1_700_000_000 + 0.25 * k:.2f},{lat:.8f},{lon:.8f},{stated:.2f}")
+    (tmp_path / "a.csv").write_text("\n".join(rows) + "\n")
+    return navbound.analyze(tmp_path / "a.csv", sigma_m=5.0)
+
+
+def test_laps_are_as_long_as_their_way_and_not_their_chords(tmp_path: Path) -> None:
+    """At 30 m/s round 120 m a chord of 10 s is 0.76 of its way."""
+    run = circuit(tmp_path, 120.0, 30.0, 30.0)
+    assert run.summary.verdict.id == "inside"
+    assert run.epochs["ground_speed_mps"].to_list() == pytest.approx([30.0] * 480, rel=1e-4)
+
+
+def test_laps_hide_no_speed_of_another_unit(tmp_path: Path) -> None:
+    assert circuit(tmp_path, 120.0, 30.0, 30.0 / MPS["kt"]).epochs["ground_speed_mps"].to_list() == pytest.approx([30.0] * 480, rel=1e-3)
+    assert circuit(tmp_path, 120.0, 30.0, 36.0).summary.verdict.id == "not_shown"
+
+
+def test_two_ways_find_no_unit_and_doubt_nothing(tmp_path: Path) -> None:
+    run = analysed(tmp_path, "speed", [3.0] * 200 + [90.0] * 15 + [3.0] * 185, [3.0] * 200 + [60.0] * 15 + [3.0] * 185)
+    assert run.summary.verdict.id == "inside"
+    assert "ground_speed_mps" not in run.epochs.columns
+    assert any("too few to find it: it is not read" in each for each in run.summary.assumptions)
+
+
+@pytest.mark.parametrize("field", ["{:.3f} km/h", "{:.3f}KM/H"])
+def test_a_unit_in_each_field_needs_no_ways(tmp_path: Path, field: str) -> None:
+    """A boat at anchor and under way, slower than what decides a unit; heights have theirs behind them as well."""
+    rows, lat = ["time,lat,lon,HEIGHT,SPEED"], 48.0
+    for k in range(120):
+        mps = 0.0 if k < 60 else 3.0
+        rows.append(f"{1_700_000_000 + k},{lat:.8f},2.5,513.863 M,{field.format(3.6 * mps)}")
+        lat += mps / 111_195.0
+    (tmp_path / "a.csv").write_text("\n".join(rows) + "\n")
+    run = navbound.analyze(tmp_path / "a.csv", sigma_m=5.0)
+    assert run.summary.verdict.id == "inside"
+    assert run.epochs["ground_speed_mps"].to_list() == pytest.approx([0.0] * 60 + [3.0] * 60)
+    assert run.epochs["est_h_m"].to_list() == pytest.approx([513.863] * 120)

@@ -39,6 +39,7 @@ _CODES: dict[Axis, dict[float, int]] = {
 }
 """Numbers of a hemisphere: the sign, or the character. Provenance: ours."""
 _UNCLEAR = frozenset((0.0, 1.0, 2.0))
+_ALL_CODES = frozenset(code for codes in _CODES.values() for code in codes)
 _COUNTED = words("ns ew")
 """Names that are those of numbers of satellites and of intervals, too. Provenance: ours."""
 
@@ -49,7 +50,6 @@ class _Seen:
 
     n_written: int = 0
     n_letters: dict[Axis, int] = field(default_factory=lambda: dict.fromkeys(AXES, 0))
-    n_below: dict[Axis, int] = field(default_factory=lambda: dict.fromkeys(AXES, 0))
     n_against: dict[Axis, int] = field(default_factory=lambda: dict.fromkeys(AXES, 0))
     n_unclear: int = 0
 
@@ -88,18 +88,20 @@ class Hemispheres:
             if len(written) > _MOST_WORDS:
                 return
             read = {text: sides(text) for text in written}
-        elif of is None or not (column.dtype.is_numeric() or column.dtype == pl.Boolean):
+        elif (of is None and not _is_of_any(column.name)) or not (column.dtype.is_numeric() or column.dtype == pl.Boolean):
             return
         else:
             texts = column.cast(pl.Float64)
-        if of is None and not any(side.lat or side.lon for side in read.values()):
+        if of is None and not _is_of_any(column.name) and not any(side.lat or side.lon for side in read.values()):
             return
         signs = {axis: _coded(texts, {text: side[k] for text, side in read.items()}) for k, axis in enumerate(AXES)}
         numbers = texts.cast(pl.Float64, strict=False)
         if of is not None:
             signs[of] = pl.select(pl.coalesce(signs[of], _coded(numbers, _CODES[of]))).to_series()
         seen = self._seen.setdefault(column.name, _Seen())
-        seen.n_unclear += int(numbers.is_in(list(_UNCLEAR)).sum())
+        # Where the name is of neither coordinate nobody knows of which its numbers are.
+        unclear = _UNCLEAR if of is not None else _UNCLEAR | _ALL_CODES if _is_of_any(column.name) else frozenset[float]()
+        seen.n_unclear += int(numbers.is_in(sorted(unclear)).sum())
         blank = sum(int((texts == text).sum()) for text in read if not text.strip())
         self._count(seen, len(texts) - texts.null_count() - blank, signs, part)
 
@@ -110,7 +112,6 @@ class Hemispheres:
             angle = part[axis]
             side = pl.select(pl.when(angle.abs() > _NO_SIDE_RAD).then(angle.sign())).to_series()
             seen.n_letters[axis] += sign.count()
-            seen.n_below[axis] += int((sign < 0).sum())
             seen.n_against[axis] += int((sign.cast(pl.Float64) * side < 0.0).sum())
 
     def doubts(self) -> list[str]:
@@ -126,26 +127,25 @@ class Hemispheres:
                     yield self._words(name, axis, f"says another hemisphere than “{self._read[axis]}” is read in {n}")
 
     def _is_evident(self, name: str, seen: _Seen, axis: Axis) -> bool:
-        """Whether letters are those of a hemisphere: by their name, by those of the other coordinate, or by where they stand."""
+        """Whether letters are those of a hemisphere: by their name, by those of the other coordinate, or of both by where they stand."""
         parts = set(name_parts(name))
         if axes_of(name) or of_name(name) or parts & OF_HEMISPHERE:
             return True
-        both = all(seen.are_letters(each) for each in AXES)
-        others = [other for other in self._seen.values() if other is not seen and not other.are_letters(axis)]
-        paired = any(other.are_letters(each) for other in others for each in AXES)
-        stands = self._stands_beside(name, axis, both=both) and not parts & _DIRECTION
-        return (paired and not both) or (stands and seen.n_below[axis] > 0)
+        if all(seen.are_letters(each) for each in AXES):
+            return self._stands_behind(name) and not parts & _DIRECTION
+        signed = {each for each in AXES if each in self._read and self._mapping.columns[each].hemisphere}
+        lettered = {each for each in AXES for other in self._seen.values() if other is not seen and other.are_letters(each)}
+        return bool((signed | lettered) - {axis})
 
-    def _stands_beside(self, name: str, axis: Axis, *, both: bool) -> bool:
-        """Whether a column comes directly behind its coordinate, or behind the second of them where its letters are of both."""
+    def _stands_behind(self, name: str) -> bool:
+        """Whether a column comes directly behind a coordinate."""
         at = self._names.index(name) if name in self._names else 0
-        before = self._names[at - 1] if at else ""
-        return before in self._read.values() if both else before == self._read[axis]
+        return at > 0 and self._names[at - 1] in self._read.values()
 
     def _unclear(self) -> Iterator[str]:
         """Numbers in a column of letters, beside a coordinate that is never below zero."""
         for name, seen in self._seen.items():
-            axis = of_name(name)
+            axis = of_name(name) or next((each for each in self._axes if not self._n_negative[each] and _is_of_any(name)), None)
             if axis not in self._axes or self._n_negative[axis] or plain_form(name)[0] in _COUNTED:
                 continue
             if seen.n_unclear > _SHARE * seen.n_written:
@@ -168,6 +168,11 @@ class Hemispheres:
         key = _key(axis)
         how = f"{declare(f'{key}={name}')}, or {key}={NO_COLUMN} where it is something else"
         return f"{self._path.name}: “{name}” {what}; {how}; nothing is shown until then"
+
+
+def _is_of_any(name: str) -> bool:
+    """Whether a name is one of a hemisphere, and of neither coordinate."""
+    return not words("hemisphere hemispheres hemi hem quadrant").isdisjoint(name_parts(name)) and not axes_of(name)
 
 
 def _coded(column: pl.Series, signs: Mapping[Any, int | None]) -> pl.Series:

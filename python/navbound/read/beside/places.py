@@ -51,6 +51,8 @@ _FORMS: dict[str, float] = {"deg": math.radians(1.0), "deg_e7": math.radians(1e-
 """What a coordinate may be written in, to radians."""
 _MARKS = r"(?i)point\s*[zm]*\s*\(|^\s*[+-]\d[\d.]+[+-]\d|\d.*[nsew].*\d|[nsew].*\d.*[nsew]|\d\.\d*[\s,;]+[-+]?\d+\.\d"
 """What every text that is a place has."""
+_LEAST_E7 = 1e5
+"""Coordinates of a pair above it are integers of 1e-7 degrees. Provenance: ours. [1]"""
 _MOST_COUNTED = 1e5
 """Whole numbers up to it under a name that counts are no coordinates; those of 1e-7 degrees are larger. Provenance: ours. [1]"""
 _EARTH_M = (6.3e6, 6.5e6)
@@ -285,6 +287,8 @@ def _of_pairs(column: pl.Series, *, by_name: bool) -> tuple[int, _Forms]:
     ordered = np.zeros(len(column), dtype=bool)
     if by_name and isinstance(dtype, pl.List) and pl.Series(dtype=dtype.inner).dtype.is_numeric():
         both = np.column_stack([_floats(column.list.get(k, null_on_oob=True)) for k in (0, 1)])
+        if np.isfinite(both).any() and np.nanmedian(np.abs(both)) > _LEAST_E7:
+            both *= 1e-7
     elif dtype == pl.String:
         # Few texts have a place; those without its marks are not looked at one by one.
         geohash = _is_geohash(column.name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 
 MAX_BAD_SHARE = 0.1
 """A file with a larger share of malformed rows than this is refused as a whole. Provenance: ours."""
+_DECIMAL_COMMA = re.compile(r"\s*[+-]?\d+,\d+\s*")
 
 
 _SHOWN = 3
@@ -81,6 +83,8 @@ class Rejections:
         first, reason, example = self._first_bad
         where = f"; first in record {first}" if self.unit != "line" else ""
         field, separator, kind = reason.partition(": ")
+        if _DECIMAL_COMMA.fullmatch(example):
+            where += "; numbers with a decimal comma are not read: write them with a point"
         raise FormatError(
             self.path,
             f"{kind if separator else reason}: found “{example[:80]}”; {malformed} of {counted(n_rows, 'row')} "

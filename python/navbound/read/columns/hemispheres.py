@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 STATED: dict[str, Axis] = {"lat_hemisphere": "est_lat_rad", "lon_hemisphere": "est_lon_rad"}
 """What a person declares a column of letters as."""
-_SIDE = r"(?:dir|direction|ref|hemi|hemisphere|indicator|ind|cardinal|sign|{0})"
+_SIDE = r"(?:dir|direction|ref|hem|hemi|hemisphere|indicator|ind|cardinal|sign|{0})"
 _NAMES = {
     f"{kind}_{axis}_rad": re.compile(rf"{of}(?:{written})_?{_SIDE.format(either)}|{of}{either}(?:_?(?:ind|indicator|hemisphere|dir))?")
     for axis, written, either in (("lat", "lat|latitude", "n[_/]?s"), ("lon", "lon|lng|long|longitude", "e[_/]?w"))
     for kind, of in (("est", "(?:gps|gnss)?_?"), ("truth", "truth_?"))
 }
 """Names of columns of letters beside a coordinate. Provenance: ours, from headers of loggers and of EXIF."""
-_PARTS = words("n s e w ns ew dir direction ref hemi hemisphere indicator ind cardinal sign latns lonew deg rad degrees m")
+_PARTS = words("n s e w ns ew dir direction ref hem hemi hemisphere indicator ind cardinal sign latns lonew deg rad degrees m")
 """Parts of names of letters, and of units of a coordinate, that say nothing of whose it is."""
 
 

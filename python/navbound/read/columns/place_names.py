@@ -16,15 +16,15 @@ AXES: tuple[Axis, Axis] = ("est_lat_rad", "est_lon_rad")
 NO_TRUTH = words("station base receiver frame system datum ellipsoid waypoint wpt runway thr threshold line path")
 """Parts of names of something else than the vehicle that is called a reference. Provenance: ours."""
 _RECEIVERS = words("true gps gnss raw irs ins fms adsb own est fix rtk ref")
-_LATITUDES = words("lat latitude latitud breite breitengrad") | {f"{whose}lat" for whose in _RECEIVERS}
+_LATITUDES = words("lat latitude latitud breite breitengrad") | {f"{whose}{lat}" for whose in _RECEIVERS for lat in ("lat", "latitude")}
 _LONGITUDES = words("lon lng longitude longitud laenge länge laengengrad") | {
-    f"{whose}{lon}" for whose in _RECEIVERS for lon in ("lon", "lng")
+    f"{whose}{lon}" for whose in _RECEIVERS for lon in ("lon", "lng", "longitude")
 }
 _NO_VEHICLE = NO_TRUTH | words(
     "airport origin destination dest departure dep arrival arr home target goal next prev previous start end first last site sensor radar "
     "beacon antenna cpr centre center cell grid tile offset scale speed vel velocity rate err error sigma std var acc accuracy axis "
     "pred predicted forecast intruder traffic lead leader min max mean avg average median "
-    "dot variance"
+    "dot variance accel acceleration g dev deviation cmd command trim stick force jerk ctrl control gain load"
 )
 """Parts of names of a latitude or a longitude, and of one that is none of the vehicle now. Provenance: ours."""
 _INERTIAL = words("irs ins iru ir adiru adirs inertial dr dead reckoning deadreckoning")
@@ -111,7 +111,6 @@ _HEMISPHERES: dict[Axis, tuple[frozenset[str], frozenset[str]]] = {
     "est_lon_rad": (words("W WEST WESTERN OUEST OVEST OESTE"), words("E EAST EASTERN EST ESTE OST OOST")),
 }
 """Words of a hemisphere below zero, and above it, by the coordinate. `O` is east in German and west in French. Provenance: ours."""
-_LETTER = {"N": 1, "S": -1, "E": 1, "W": -1}
 
 
 class Sides(NamedTuple):
@@ -121,6 +120,16 @@ class Sides(NamedTuple):
     lon: int | None = None
 
 
+_OF_BOTH = {
+    f"{lat}{lon}": Sides(lat_sign, lon_sign)
+    for lat_sign, lats in zip((-1, 1), _HEMISPHERES["est_lat_rad"], strict=True)
+    for lon_sign, lons in zip((-1, 1), _HEMISPHERES["est_lon_rad"], strict=True)
+    for lat in lats
+    for lon in lons
+}
+"""`SW`, `SOUTHWEST`."""
+
+
 def sides(text: str) -> Sides:
     """The hemispheres of a text that is nothing else: `S`, `south`, `(W)`, or `SW` and `S, W` of both."""
     word = re.sub(r"[^A-ZÀ-Þ]", "", unicodedata.normalize("NFKC", text).upper())
@@ -128,11 +137,10 @@ def sides(text: str) -> Sides:
         for sign, written in zip((-1, 1), of, strict=True):
             if word in written:
                 return Sides(lat=sign) if axis == "est_lat_rad" else Sides(lon=sign)
-    both = re.fullmatch(r"([NS])([EW])", word)
-    return Sides(_LETTER[both[1]], _LETTER[both[2]]) if both else Sides()
+    return _OF_BOTH.get(word, Sides())
 
 
-OF_HEMISPHERE = words("hemisphere hemi hem quadrant ns ew nsew north south east west cardinal")
+OF_HEMISPHERE = words("hemisphere hemispheres hemi hem quadrant ns ew nsew north south east west cardinal")
 """Parts of names of a hemisphere. Provenance: ours."""
 
 

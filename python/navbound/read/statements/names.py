@@ -32,7 +32,7 @@ _ACCURACY = words(
 """Parts of names of a horizontal accuracy or error, a length. Provenance: ours."""
 _NO_POSITION = words(
     "v vert vertical u up down alt altitude height z vel velocity speed sog rate climb track heading head hdg course cog bearing yaw roll "
-    "pitch attitude angle t time clock clk bias drift gyro accel acceleration imu mag lin linear ang angular range doppler phase code id "
+    "c pitch attitude angle t time clock clk bias drift gyro accel acceleration imu mag lin linear ang angular range doppler phase code id "
     "flag flags count counter n num number type message mode status state percent pct ratio mps mps2 s ns us ms deg rad dps kt kts hz db"
 )
 """Parts of names of something else. Provenance: ours."""

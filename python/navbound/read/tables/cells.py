@@ -45,6 +45,17 @@ def no_field(dtype: pl.DataType) -> bool:
     return dtype.is_nested() or dtype in (pl.Binary, pl.Object, pl.Duration)
 
 
+_IN_FIELDS = ("m", "mps")
+"""Kinds of quantities that loggers write with their unit in each field, `513.863 M` and `15.862 km/h`."""
+
+
+def _with_units(text: pl.Series, units: Mapping[str, float], factor: float) -> pl.Series:
+    """Numbers with a known unit behind each, in the unit of the column; null for anything else."""
+    parts = text.str.to_lowercase().str.extract_groups(r"^([+-]?\d+(?:\.\d*)?)\s*([a-z][a-z/]*)$").struct.unnest()
+    of_unit = parts["2"].replace_strict(units, default=None, return_dtype=pl.Float64)
+    return parts["1"].cast(pl.Float64, strict=False) * of_unit / factor
+
+
 def numbers(column: pl.Series, what: Column) -> tuple[pl.Series, pl.Series]:
     """Values in SI, null where there is none; and why, null where nothing is wrong."""
     q = QUANTITY[what.quantity]
@@ -54,6 +65,8 @@ def numbers(column: pl.Series, what: Column) -> tuple[pl.Series, pl.Series]:
         # Programs write a missing number as an empty field or as nan: an outage is no damage.
         text = text.set(text.str.contains(MISSING) | on_ground(column, what), None)
         raw = text.cast(pl.Float64, strict=False)
+        if q.si in _IN_FIELDS and raw.null_count() > text.null_count():
+            raw = pl.select(pl.coalesce(raw, _with_units(text, UNITS[q.si], factor))).to_series()
         empty = text.is_null()
     elif column.dtype.is_numeric() or column.dtype == pl.Null:
         raw = column.cast(pl.Float64)

@@ -35,6 +35,12 @@ def is_row_of_units(row: Mapping[str, object], mapping: Assignment) -> bool:
     return sum(cell in _TELLING for cell in cells) >= _LEAST
 
 
+def of_no_length(stated: Mapping[str, object], mapping: Assignment) -> set[str]:
+    """The accuracies and levels of which a row of units says that they are no lengths: `cAcc` in degrees."""
+    units = {name: _unit(stated.get(name) or "") for name in (*mapping.accuracies, *mapping.levels)}
+    return {name for name, unit in units.items() if unit in _TELLING and unit not in UNITS["m"]}
+
+
 def require_same(stated: Mapping[str, object], mapping: Assignment, path: Path, line: int) -> None:
     """Refuse units that a file states, column by column, where they are others than those that the columns are read in.
 

@@ -33,7 +33,7 @@ from navbound.read.tables.cells import (
     words_of_ground,
 )
 from navbound.read.tables.names import Callsigns, one_writing
-from navbound.read.tables.stated_units import is_row_of_units, require_same
+from navbound.read.tables.stated_units import is_row_of_units, of_no_length, require_same
 from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, shown, understand, units
 
@@ -96,6 +96,7 @@ class Values:
         self._stating, self._units = Stating(mapping), UnstatedUnits(path, mapping)
         self._unit = ""
         self._n_ground: dict[str, int] = {}
+        self._no_lengths = set[str]()
         self._altitude = self._units.altitude
 
     def take(self, frame: pl.DataFrame) -> pl.DataFrame:
@@ -123,6 +124,9 @@ class Values:
                 against.append((column.name, reason))
             else:
                 bad |= self._count(OPTIONAL + place, frame, column.name, reason)
+        # A row that is left out is malformed once.
+        for _, reason in against:
+            bad &= reason.is_null()
         self.tally.n_with_bad_values += int(bad.sum())
         part = pl.DataFrame([values.alias(name) for name, values in out.items()])
         part, without = levels.without_bound(part)
@@ -169,7 +173,7 @@ class Values:
     def _with_unread(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
         """The largest number of the columns that nothing reads though they speak of an accuracy, or of a level; it bounds nothing."""
         for quantity, lengths in (("unread_accuracy_m", self._mapping.accuracies), ("unread_level_m", self._mapping.levels)):
-            known = {name: frame[name] for name in lengths if not no_field(frame.schema[name])}
+            known = {name: frame[name] for name in lengths if name not in self._no_lengths and not no_field(frame.schema[name])}
             numbers_of = {name: raw.cast(pl.Float64, strict=False).abs().fill_nan(None) for name, raw in known.items()}
             self._count_uncompared(frame, numbers_of)
             values = [(each * lengths[name]).alias(name) for name, each in numbers_of.items()]
@@ -210,6 +214,7 @@ class Values:
                 raise FormatError(self._path, why, line)
             if is_row_of_units(row, self._mapping):
                 require_same(row, self._mapping, self._path, line)
+                self._no_lengths |= of_no_length(row, self._mapping)
                 self.notes.append(f"{self._path.name}: line {line} holds the units of the columns, which are those that they are read in")
                 units.append(line)
         return frame.filter(~pl.col(LINE).is_in(units)) if units else frame
@@ -279,10 +284,13 @@ class Values:
         self._altitude.understand(head.with_columns(time.alias("time_ns"), self._track(head)))
 
     def _understand_speed(self) -> None:
-        if self._speed is None or (head := self._speed.head()).is_empty():
+        if self._speed is None:
             return
-        time, _ = converted(_written(head), self._mapping.times, self._unit)
-        self._speed.understand(head.with_columns(time.alias("time_ns"), self._track(head)))
+        if (head := self._speed.head()).is_empty():
+            self._speed.settle()
+        else:
+            time, _ = converted(_written(head), self._mapping.times, self._unit)
+            self._speed.understand(head.with_columns(time.alias("time_ns"), self._track(head)))
         notes, doubts = self._speed.words(self._path)
         self.notes += notes
         self.position_doubts += doubts
