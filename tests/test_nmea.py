@@ -86,3 +86,58 @@ def test_live_rmc_beside_gga_is_no_second_position(tmp_path: Path, order: str) -
     epochs = watched(text, tmp_path, sigma_m=5.0)
     assert epochs["time_ns"].n_unique() == epochs.height == N
     assert [epochs["status"][k] for k in (0, 30)] == ["not_available"] * 2
+
+
+@pytest.mark.parametrize("last", ["RMC", "GLL", "GNS"])
+@pytest.mark.parametrize("where", ["end", "begin", "between"])
+def test_an_epoch_that_other_sentences_state_without_a_fix_is_missing_where_no_gga_comes(tmp_path: Path, where: str, last: str) -> None:
+    """Of 60 s, 20 have no GGA: the receiver says that it has no fix."""
+    without = {"end": range(40, 60), "begin": range(20), "between": range(1, 41, 2)}[where]
+
+    def none(k: int) -> str:
+        time = f"1200{k:02d}.00"
+        bodies = {"RMC": f"GPRMC,{time},V,,,,,,,010624,,,N", "GLL": f"GPGLL,,,,,{time},V,N", "GNS": f"GNGNS,{time},,,,,NN,00,,,,,"}
+        return sentence(bodies[last])
+
+    text = "".join(none(k) if k in without else second(k) for k in range(60))
+    verdict = analyzed(text, tmp_path).summary.verdict
+    assert (verdict.id, verdict.n_judged, verdict.n_missing) == ("not_shown", 40, 20)
+    # Live nothing before the first date has a time.
+    if where != "begin":
+        assert watched(text, tmp_path)["status"].to_list().count("not_available") == 20
+
+
+@pytest.mark.parametrize("where", ["end", "begin"])
+def test_positions_of_rmc_that_go_on_without_gga_are_expected(tmp_path: Path, where: str) -> None:
+    alone = range(20, 60) if where == "end" else range(40)
+    verdict = analyzed("".join(second(k, "RMC" if k in alone else "RMC GGA GST") for k in range(60)), tmp_path).summary.verdict
+    assert (verdict.id, verdict.n_judged) == ("not_shown", 20)
+    assert verdict.n_missing + verdict.n_absent >= 1
+
+
+def test_positions_of_rmc_between_those_of_gga_are_no_epochs(tmp_path: Path) -> None:
+    """A receiver writes RMC each second and GGA at every fifth."""
+    verdict = analyzed("".join(second(k, "RMC GGA GST" if k % 5 == 0 else "RMC") for k in range(300)), tmp_path).summary.verdict
+    assert (verdict.id, verdict.n_judged, verdict.n_missing) == ("inside", 60, 0)
+
+
+def test_another_talker_takes_no_datum_back(tmp_path: Path) -> None:
+    text = "".join(second(k) for k in range(2, N))
+    with pytest.raises(FormatError, match="DTM datum NAD27"):
+        analyzed(OTHER_DATUM + second(0) + sentence("GLDTM,W84,,0.0,N,0.0,E,0.0,W84") + second(1) + text, tmp_path)
+    epochs = watched(OTHER_DATUM + second(0) + sentence("GLDTM,W84,,0.0,N,0.0,E,0.0,W84") + second(1) + text, tmp_path)
+    assert set(epochs["status"]) == {"not_available"}
+
+
+def test_a_speed_that_vtg_estimates_speaks_of_positions_that_stand(tmp_path: Path) -> None:
+    def standing(k: int) -> str:
+        time, place = f"12{k // 60:02d}{k % 60:02d}.00", f"48{10 + 0.001 * (k % 3):08.5f},N,00230.0000,E"
+        bodies = (
+            f"GPRMC,{time},A,{place},,,010624,,,A",
+            f"GPGGA,{time},{place},1,08,1.0,100.0,M,45.0,M,,",
+            "GPVTG,0.0,T,,M,136.0,N,251.9,K,E",
+            f"GPGST,{time},1.0,5.0,5.0,0.0,5.0,5.0,5.0",
+        )
+        return "".join(map(sentence, bodies))
+
+    assert analyzed("".join(standing(k) for k in range(120)), tmp_path).summary.verdict.id == "not_shown"

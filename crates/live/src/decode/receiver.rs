@@ -57,6 +57,7 @@ pub(super) fn write(decoder: &Decoder, to: &mut Writer) {
     for stated in [&datum.of_epoch, &datum.newest] {
         to.option(stated.as_deref(), |to, stated| to.bytes(stated.as_bytes()));
     }
+    datum.talker.iter().for_each(|byte| to.u8(*byte));
     to.flag(*gga);
 }
 
@@ -76,7 +77,8 @@ pub(super) fn read(kind: Kind, from: &mut Reader<'_>) -> Result<Decoder, Damaged
     let mut stated = || {
         from.option(|from| from.bytes().and_then(|text| core::str::from_utf8(text).map(str::to_owned).map_err(|_| Damaged("not a text"))))
     };
-    let datum = Datum { of_epoch: stated()?, newest: stated()? };
+    let (of_epoch, newest) = (stated()?, stated()?);
+    let datum = Datum { of_epoch, newest, talker: [from.u8()?, from.u8()?] };
     Ok(Decoder::with_state(kind, Ends::WithLast, state, Heard { dated, datum, gga: from.flag()? }))
 }
 

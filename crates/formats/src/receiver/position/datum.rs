@@ -20,10 +20,16 @@ pub struct Datum {
     pub of_epoch: Option<String>,
     /// What the last one said.
     pub newest: Option<String>,
+    /// Its talker: what another one says of its own positions takes nothing back.
+    pub talker: [u8; 2],
 }
 
 impl Datum {
-    pub(super) fn hear(&mut self, against: Option<String>) {
+    pub(super) fn hear(&mut self, talker: [u8; 2], against: Option<String>) {
+        if against.is_none() && self.newest.is_some() && talker != self.talker {
+            return;
+        }
+        self.talker = talker;
         self.of_epoch = self.of_epoch.take().or_else(|| against.clone());
         self.newest = against;
     }

@@ -110,7 +110,8 @@ impl Decoder {
                 self.epoch.put_beside(message, |new, kept| number(&new.body) > number(&kept.body));
             }
             Step::Datum(against) => {
-                self.heard.datum.hear(against.clone());
+                let talker = body.get(..2).and_then(|talker| talker.try_into().ok()).unwrap_or_default();
+                self.heard.datum.hear(talker, against.clone());
                 out.push(Item::Datum(against));
             }
             Step::End { key, kind } => {

@@ -15,6 +15,12 @@ const DAMAGED_OTHER: &str = "damaged_other_message";
 /// The id of an accuracy beside which no position stands.
 const UNPAIRED: &str = "accuracy_without_position";
 
+/// How far behind the last epoch, in usual steps and in seconds, a sentence says that the receiver went on, and the longest that its clock is
+/// believed. Provenance: ours \[1, s\].
+const USUAL_STEPS: f64 = 3.0;
+const SILENT_S: f64 = 2.0;
+const LONGEST_S: f64 = 86_400.0;
+
 /// Doubts that are kept. Provenance: ours.
 const MOST_NOTES: usize = 8;
 
@@ -142,6 +148,24 @@ impl Log {
                 position.forget_time_before(*record, *dated);
             }
             self.position(position.checked());
+        }
+        for of_end in [dates.first(), dates.last()].into_iter().flatten() {
+            self.beyond(*of_end);
+        }
+    }
+
+    /// A sentence of a time well before or behind all epochs: the receiver went on without a position.
+    fn beyond(&mut self, (record, dated): (u64, Dated)) {
+        let mut moment = Position { of_day: Some(dated.of_day), ..Position::default() };
+        moment.date(dated);
+        let times = || self.positions.iter().filter_map(|each| each.time).chain(self.absent.iter().copied().flatten());
+        let (Some(time), Some(first), Some(last)) = (moment.time, times().min(), times().max()) else { return };
+        let usual_s = last.seconds_since(first) / (times().count().max(2) - 1) as f64;
+        let beyond_s = time.seconds_since(last).max(first.seconds_since(time));
+        if beyond_s > (USUAL_STEPS * usual_s).max(SILENT_S) && beyond_s < LONGEST_S {
+            self.n_rows += 1;
+            self.absent.push(Some(time));
+            self.leave_out(Reason::NoFix.id(), false, record, "RMC or ZDA, and no position of its time".to_owned());
         }
     }
 

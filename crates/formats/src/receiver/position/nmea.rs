@@ -191,7 +191,8 @@ impl Own<'_> {
 pub(super) fn position(messages: &[Message], heard: &Heard) -> Option<Position> {
     let sentence = |kind| of_kind(messages, kind).map(|message| Sentence(&message.body));
     let kind = if heard.gga { GGA } else { RMC };
-    let (record, own) = (of_kind(messages, kind)?.record, Own { kind, sentence: sentence(kind)? });
+    let Some(message) = of_kind(messages, kind) else { return without_gga(messages) };
+    let (record, own) = (message.record, Own { kind, sentence: Sentence(&message.body) });
     let (lat_rad, lon_rad) = (own.sentence.angle(own.at(), [b"N", b"S"]), own.sentence.angle(own.at() + 2, [b"E", b"W"]));
     let (altitude, separation) = (own.number(9), own.number(11));
     let all = |kind| all_of_kind(messages, kind).map(|message| Sentence(&message.body));
@@ -241,6 +242,20 @@ pub(super) fn position(messages: &[Message], heard: &Heard) -> Option<Position> 
         notes: [if heard.gga { without_separation } else { Some(Note::OfRmc) }, worse.or(substitute)],
         ..Position::default()
     })
+}
+
+/// An epoch at which other sentences state that there is no fix, and no GGA came: the receiver has no position.
+fn without_gga(messages: &[Message]) -> Option<Position> {
+    let none = |(kind, name, time, status, mode): (u32, &str, usize, usize, usize)| {
+        let message = of_kind(messages, kind)?;
+        let sentence = Sentence(&message.body);
+        let invalid = sentence.get(status) == Some(b"V".as_slice());
+        let unmeasured = sentence.get(mode).is_some_and(|mode| !mode.is_empty() && !mode.iter().any(|letter| NMEA_MODES.contains(letter)));
+        let stated = format!("{name} without a fix, and no GGA");
+        (invalid || unmeasured)
+            .then(|| Position { of_day: sentence.get(time).and_then(of_day), ..Position::none(message.record, Reason::NoFix, stated) })
+    };
+    [(RMC, "RMC", 1, 2, 12), (GLL, "GLL", 5, 6, 7), (GNS, "GNS", 1, ABSENT, 6)].into_iter().find_map(none)
 }
 
 /// What the sentences of an epoch say against its position.

@@ -90,7 +90,7 @@ fn degrees(text: &[u8]) -> Option<f64> {
     (minutes < 60.0).then_some(whole + minutes / 60.0)
 }
 
-/// Speed of a VTG sentence, whose mode says that it was measured where it has one. Its numbers have the letter of their unit behind them; the
+/// Speed of a VTG sentence, whose mode says that it was measured or estimated where it has one. Its numbers have the letter of their unit behind them; the
 /// old form has four numbers and no letter: true and magnetic track, knots, kilometres an hour.
 pub(super) fn vtg_speed_mps(vtg: &Sentence<'_>) -> Result<Option<f64>, &'static str> {
     let old = vtg.get(5).is_none() && vtg.get(2) != Some(b"T");
@@ -104,7 +104,8 @@ pub(super) fn vtg_speed_mps(vtg: &Sentence<'_>) -> Result<Option<f64>, &'static 
     if !(vtg.sound(if old { &[1, 2, 3, 4] } else { &[1, 3, 5, 7] }) && if old { one() } else { units.into_iter().all(lettered) }) {
         return Err("VTG is in no form that is read");
     }
-    let measured = vtg.get(9).is_none_or(|mode| mode.iter().all(|letter| NMEA_MODES.contains(letter)));
+    // A speed that is estimated speaks of the positions beside it all the same.
+    let measured = vtg.get(9).is_none_or(|mode| mode.iter().all(|letter| NMEA_MODES.contains(letter) || *letter == b'E'));
     Ok(knots_mps.or(kmh_mps).filter(|speed_mps| measured && *speed_mps >= 0.0))
 }
 
