@@ -6,6 +6,7 @@ pub mod balance;
 mod clock;
 pub mod consistency;
 mod counters;
+pub mod drift;
 pub mod exposure;
 pub mod guard;
 pub mod judgement;

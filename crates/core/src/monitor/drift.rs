@@ -1,0 +1,331 @@
+//! Whether positions drift aside of the way that the reported track leads: what is within the limits of each minute adds up.
+//!
+//! A track and a speed lead somewhere in a minute. What the positions travelled aside of that, beyond what rounding and noise explain, is added up
+//! to either side; the sum begins anew where nothing is left, so that a drift shows however long the flight before it was right. In turns a
+//! lag of the positions is aside: only straight minutes count.
+//!
+//! Recorded tables add up their own minutes, between statements that are further apart as well ([`Sums`]); [`Drift`] makes the minutes of a
+//! track whose reports arrive.
+
+use super::neighbours::east_north_m;
+use super::way::TURNING_MPS2;
+use crate::special::float::{atan2, cos, hypot, sin, sqrt};
+use core::f64::consts::PI;
+
+/// What the positions of a track may drift aside of its reported track beyond the shares below, over any minutes on end: 0.7 km at most in
+/// 949 shared tracks that are right. Provenance: ours \[m\].
+pub const DRIFT_M: f64 = 2000.0;
+/// Share of the way that they may drift aside: a track that is a degree off, and the sphere that ways lie on. Provenance: ours \[1\].
+const SHARE: f64 = 0.02;
+/// The same beside what the track is rounded to. Provenance: ours \[1\].
+const ROUNDED: f64 = 0.01;
+/// Drift of a track that is computed of velocities in whole knots. Provenance: ours \[m/s\].
+const DRIFT_MPS: f64 = 0.3;
+/// What tracks are rounded to, or cut: nothing, whole degrees, a byte, and seven bits of it \[deg\].
+const GRIDS_DEG: [f64; 4] = [0.0, 1.0, 360.0 / 256.0, 360.0 / 128.0];
+/// Multiples of these have decimals of their own. Provenance: ours \[deg\].
+const ON_GRID_DEG: f64 = 0.06;
+/// Share of the way of a minute by its speeds that lies between its ends where it is compared. Provenance: ours \[1\].
+pub const STRAIGHT: f64 = 0.99;
+/// Noise of two positions, in standard deviations. Provenance: ours \[1\].
+pub const DEVIATIONS: f64 = 6.0;
+/// What is slower may stand: noise has any direction. Provenance: ours \[m/s\].
+const MOVING_MPS: f64 = 5.0;
+/// Shortest minute \[ns\].
+const WINDOW_NS: i64 = 60_000_000_000;
+/// Between two statements that are further apart speed and track may have been any \[ns\]. Provenance: ours.
+const EVEN_NS: i64 = 10_000_000_000;
+/// Legs of the way that positions travel: the noise of each step would add up to a way of its own \[ns\]. Provenance: ours.
+const LEG_NS: i64 = 10_000_000_000;
+/// A source that repeats a speed and a track for this long may have no others: where the positions turn meanwhile nothing is compared
+/// \[ns\]. Provenance: ours.
+const REPEATED_NS: i64 = 10_000_000_000;
+/// Minutes on end of which nothing is compared for that: recordings of Paris have a minute and a half. Provenance: ours.
+const REPEATED: u32 = 3;
+
+/// Of minutes on end, to one side.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Side {
+    /// By how much positions drifted beyond what they may \[m\].
+    pub beyond_m: f64,
+    /// How far in all \[m\].
+    pub aside_m: f64,
+    /// On which way \[m\].
+    pub way_m: f64,
+    /// The largest noise of a minute \[m\].
+    pub noise_m: f64,
+    /// Minutes.
+    pub n: u32,
+}
+
+impl Side {
+    /// The next minute; what went the other way ends it.
+    fn see(&mut self, aside_m: f64, allowed_m: f64, way_m: f64, noise_m: f64) {
+        let beyond_m = self.beyond_m + aside_m - allowed_m;
+        *self = if beyond_m > 0.0 {
+            let (aside_m, way_m, noise_m) = (self.aside_m + aside_m, self.way_m + way_m, self.noise_m.max(noise_m));
+            Self { beyond_m, aside_m, way_m, noise_m, n: self.n.saturating_add(1) }
+        } else {
+            Self::default()
+        };
+    }
+
+    /// By how much more than positions that are right drift.
+    fn over_m(&self) -> f64 {
+        self.beyond_m - DRIFT_M - self.noise_m * (0.5 * sqrt(f64::from(self.n))).max(1.0)
+    }
+}
+
+/// A drift that positions which are right do not have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drifted {
+    /// Beyond what they may \[m\].
+    pub over_m: f64,
+    /// Aside in all \[m\].
+    pub aside_m: f64,
+    /// On which way \[m\].
+    pub way_m: f64,
+    /// In so many minutes.
+    pub n: u32,
+}
+
+const NOTHING: Drifted = Drifted { over_m: 0.0, aside_m: 0.0, way_m: 0.0, n: 0 };
+
+/// The drifts of a track to either side by each grid that its courses may have, and the worst of each so far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sums {
+    /// By grid: to the right, and to the left.
+    pub sides: [[Side; 2]; 4],
+    /// By grid.
+    pub worst: [Drifted; 4],
+    /// Whether all courses so far are on the grid.
+    pub on_grid: [bool; 4],
+}
+
+impl Default for Sums {
+    fn default() -> Self {
+        Self { sides: [[Side::default(); 2]; 4], worst: [NOTHING; 4], on_grid: [true; 4] }
+    }
+}
+
+impl Sums {
+    /// A course of the track; NaN is none.
+    pub fn course(&mut self, track_rad: f64) {
+        let deg = track_rad.to_degrees();
+        if !deg.is_finite() {
+            return;
+        }
+        for (on_grid, grid_deg) in self.on_grid.iter_mut().zip(GRIDS_DEG).skip(1) {
+            let times = deg / grid_deg;
+            let nearest = (times + 0.5_f64.copysign(times)) as i64 as f64;
+            *on_grid &= (deg - grid_deg * nearest).abs() <= ON_GRID_DEG;
+        }
+    }
+
+    /// The next minute: how far the positions went to the right, the way by the speeds, its length, and the noise of its ends.
+    pub fn minute(&mut self, aside_m: f64, way_m: f64, length_s: f64, noise_m: f64) {
+        self.straight([aside_m, -aside_m], way_m, length_s, noise_m);
+    }
+
+    fn straight(&mut self, aside_m: [f64; 2], way_m: f64, length_s: f64, noise_m: f64) {
+        for ((sides, worst), grid_deg) in self.sides.iter_mut().zip(&mut self.worst).zip(GRIDS_DEG) {
+            let allowed_m = SHARE.max(ROUNDED + grid_deg.to_radians()) * way_m + DRIFT_MPS * length_s;
+            for (side, aside_m) in sides.iter_mut().zip(aside_m) {
+                side.see(aside_m, allowed_m, way_m, noise_m);
+                let over_m = side.over_m();
+                if over_m > worst.over_m {
+                    *worst = Drifted { over_m, aside_m: side.aside_m, way_m: side.way_m, n: side.n };
+                }
+            }
+        }
+    }
+
+    /// The worst drift by the coarsest grid that all courses of the track are on; none where it is one that positions may have.
+    #[must_use]
+    pub fn drifted(&self) -> Option<Drifted> {
+        // One course, or a few round ones, are on every grid.
+        let [.., degrees, byte, seven_bits] = self.on_grid;
+        let coarsest = if degrees {
+            1
+        } else if seven_bits {
+            3
+        } else if byte {
+            2
+        } else {
+            0
+        };
+        Some(self.worst[coarsest]).filter(|worst| worst.over_m > 0.0)
+    }
+}
+
+/// A place of a track that is believed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct At {
+    /// When, in nanoseconds of any origin.
+    pub time_ns: i64,
+    /// Latitude \[rad\].
+    pub lat_rad: f64,
+    /// Longitude \[rad\].
+    pub lon_rad: f64,
+    /// Reported speed over the ground, NaN where none is \[m/s\].
+    pub speed_mps: f64,
+    /// Reported track over the ground from true north, NaN where none is \[rad\].
+    pub track_rad: f64,
+    /// Root of both horizontal variances, 0 where none is stated \[m\].
+    pub sigma_m: f64,
+}
+
+impl At {
+    /// The way to another, the same back, in the directions of the middle.
+    fn way_to(&self, other: &Self) -> [f64; 2] {
+        let ends = [[self.lat_rad, self.lon_rad], [other.lat_rad, other.lon_rad]];
+        let ([east, north], [west, south]) = (east_north_m(ends[0], ends[1]), east_north_m(ends[1], ends[0]));
+        [0.5 * (east - west), 0.5 * (north - south)]
+    }
+}
+
+/// The minute that is open.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Window {
+    /// Where it began.
+    pub begin: At,
+    /// The last report.
+    pub last: At,
+    /// Where the last leg began.
+    pub leg: At,
+    /// Since when speed and track are what they are \[ns\].
+    pub since_ns: i64,
+    /// The longest time for which they were repeated \[ns\].
+    pub repeated_ns: i64,
+    /// By the speeds, and by legs of the positions \[m\].
+    pub ways_m: [f64; 2],
+    /// East and north, where speed and track lead \[m\].
+    pub lead_m: [f64; 2],
+    /// East and north, where the positions went \[m\].
+    pub moved_m: [f64; 2],
+}
+
+impl Window {
+    const fn begin(at: At) -> Self {
+        let (since_ns, none_m) = (at.time_ns, [0.0; 2]);
+        Self { begin: at, last: at, leg: at, since_ns, repeated_ns: 0, ways_m: none_m, lead_m: none_m, moved_m: none_m }
+    }
+
+    /// A step of a steady turn is a chord in the mean direction of its ends.
+    fn step(&mut self, at: At) {
+        let elapsed_s = at.time_ns.saturating_sub(self.last.time_ns) as f64 * 1e-9;
+        let even_m = 0.5 * (self.last.speed_mps + at.speed_mps) * elapsed_s;
+        let half_rad = 0.5 * turn_rad(self.last.track_rad, at.track_rad);
+        let chord_m = even_m * if half_rad.abs() > 1e-6 { sin(half_rad) / half_rad } else { 1.0 };
+        let towards = self.last.track_rad + half_rad;
+        self.lead_m = [self.lead_m[0] + chord_m * sin(towards), self.lead_m[1] + chord_m * cos(towards)];
+        let [east, north] = self.last.way_to(&at);
+        self.moved_m = [self.moved_m[0] + east, self.moved_m[1] + north];
+        self.ways_m[0] += even_m;
+        if at.time_ns.saturating_sub(self.leg.time_ns) >= LEG_NS {
+            self.close_leg(at);
+        }
+        if at.speed_mps != self.last.speed_mps || at.track_rad != self.last.track_rad {
+            self.since_ns = at.time_ns;
+        }
+        self.repeated_ns = self.repeated_ns.max(at.time_ns.saturating_sub(self.since_ns));
+        self.last = at;
+    }
+
+    fn close_leg(&mut self, at: At) {
+        let [east, north] = self.leg.way_to(&at);
+        self.ways_m[1] += hypot(east, north);
+        self.leg = at;
+    }
+
+    /// What it is, where it is one to judge.
+    fn minute(mut self) -> Option<Minute> {
+        self.close_leg(self.last);
+        let [way_m, by_legs_m] = self.ways_m;
+        let length_s = self.last.time_ns.saturating_sub(self.begin.time_ns) as f64 * 1e-9;
+        let [[lead_east, lead_north], [east, north]] = [self.lead_m, self.moved_m];
+        let (lead_m, moved_m) = (hypot(lead_east, lead_north), hypot(east, north));
+        let noise_m = DEVIATIONS * hypot(self.begin.sigma_m, self.last.sigma_m);
+        if !(way_m >= MOVING_MPS * length_s && lead_m >= STRAIGHT * way_m && moved_m.is_finite()) {
+            return None;
+        }
+        let aside_m = (east * lead_north - north * lead_east) / lead_m;
+        let backwards = east * lead_east + north * lead_north < 0.0;
+        // What goes backwards is on neither side.
+        let sides_m = if backwards { [moved_m; 2] } else { [aside_m, -aside_m] };
+        let repeats = self.repeated_ns >= REPEATED_NS && moved_m + noise_m < STRAIGHT * by_legs_m;
+        Some(Minute { sides_m, way_m, length_s, noise_m, repeats })
+    }
+}
+
+/// A straight minute.
+struct Minute {
+    /// How far the positions went to the right and to the left of where speed and track lead.
+    sides_m: [f64; 2],
+    way_m: f64,
+    length_s: f64,
+    noise_m: f64,
+    /// Whether the positions turned while the source repeated itself.
+    repeats: bool,
+}
+
+/// The drifts of one track whose reports arrive. No heap.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Drift {
+    /// The minute that is open.
+    pub window: Option<Window>,
+    /// Minutes on end in which the positions turned while the source repeated itself.
+    pub repeats: u32,
+    /// Of the minutes before.
+    pub sums: Sums,
+}
+
+impl Drift {
+    /// The next place, in the order of time. One without a speed and a track is passed over.
+    pub fn see(&mut self, at: At) {
+        self.sums.course(at.track_rad);
+        if !(at.speed_mps.is_finite() && at.track_rad.is_finite()) {
+            return;
+        }
+        let Some(window) = self.window.as_mut() else {
+            self.window = Some(Window::begin(at));
+            return;
+        };
+        let elapsed_ns = at.time_ns.saturating_sub(window.last.time_ns);
+        if elapsed_ns <= 0 {
+            return;
+        }
+        // An aircraft may turn by half a turn meanwhile, at 60 degrees of bank.
+        let known_s = PI * 0.5 * (window.last.speed_mps + at.speed_mps) / TURNING_MPS2;
+        if elapsed_ns > EVEN_NS || !(elapsed_ns as f64 * 1e-9 <= known_s) {
+            self.window = Some(Window::begin(at));
+            return;
+        }
+        window.step(at);
+        if at.time_ns.saturating_sub(window.begin.time_ns) >= WINDOW_NS {
+            if let Some(Minute { sides_m, way_m, length_s, noise_m, repeats }) = window.minute() {
+                self.repeats = if repeats { self.repeats.saturating_add(1) } else { 0 };
+                if !(1..=REPEATED).contains(&self.repeats) {
+                    self.sums.straight(sides_m, way_m, length_s, noise_m);
+                }
+            }
+            self.window = Some(Window::begin(at));
+        }
+    }
+
+    /// The drift of the track, by all that was seen, where it is more than it may be.
+    #[must_use]
+    pub fn drifted(&self) -> Option<Drifted> {
+        self.sums.drifted()
+    }
+}
+
+/// From one direction to another, within half a turn.
+fn turn_rad(from_rad: f64, to_rad: f64) -> f64 {
+    let turned = to_rad - from_rad;
+    atan2(sin(turned), cos(turned))
+}
+
+#[cfg(test)]
+#[path = "drift_tests.rs"]
+mod tests;
