@@ -4,6 +4,7 @@ use crate::error::{format_error, input_error};
 use navbound_assess::error::navigation_errors;
 use navbound_assess::plausible::{Finding, Limits, Report, SPEEDS_BESIDE, Survey, Track};
 use navbound_core::monitor::balance::{At, Balance};
+use navbound_core::monitor::drift::{self, Sums};
 use navbound_core::monitor::neighbours::{self, Apart, Place};
 use navbound_core::monitor::no_speed;
 use navbound_core::monitor::way::TURNING_MPS2;
@@ -299,6 +300,43 @@ impl TrackBalance {
     }
 }
 
+/// How far a track drifts aside of where its reported courses lead, by straight minutes of a recording.
+#[pyclass(module = "navbound._core")]
+#[derive(Default)]
+struct TrackDrift(Sums);
+
+#[pymethods]
+impl TrackDrift {
+    #[new]
+    fn new() -> Self {
+        Self::default()
+    }
+
+    /// Courses of the track; NaN is none.
+    fn see_courses(&mut self, track_rad: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
+        track_rad.as_slice()?.iter().for_each(|course| self.0.course(*course));
+        Ok(())
+    }
+
+    /// The next minutes, in the order of time: how far the positions went to the right, the way by the speeds, the length and the noise.
+    fn see_minutes(
+        &mut self,
+        aside_m: PyReadonlyArray1<'_, f64>,
+        way_m: PyReadonlyArray1<'_, f64>,
+        length_s: PyReadonlyArray1<'_, f64>,
+        noise_m: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<()> {
+        let minutes = aside_m.as_slice()?.iter().zip(way_m.as_slice()?).zip(length_s.as_slice()?).zip(noise_m.as_slice()?);
+        minutes.for_each(|(((aside_m, way_m), length_s), noise_m)| self.0.minute(*aside_m, *way_m, *length_s, *noise_m));
+        Ok(())
+    }
+
+    /// The worst drift that is more than positions may have: beyond that, aside and the way [m], in so many minutes.
+    fn drifted(&self) -> Option<(f64, f64, f64, u32)> {
+        self.0.drifted().map(|worst| (worst.over_m, worst.aside_m, worst.way_m, worst.n))
+    }
+}
+
 /// Which numbers are no speed over the ground, in a unit [m/s].
 #[pyfunction]
 fn no_speeds<'py>(py: Python<'py>, written: PyReadonlyArray1<'py, f64>, unit_mps: f64) -> PyResult<Bound<'py, PyArray1<bool>>> {
@@ -349,5 +387,8 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(no_speeds, m)?)?;
     m.add_function(wrap_pyfunction!(places_of, m)?)?;
     m.add_class::<TrackBalance>()?;
+    m.add_class::<TrackDrift>()?;
+    m.add("DRIFT_STRAIGHT", drift::STRAIGHT)?;
+    m.add("DRIFT_DEVIATIONS", drift::DEVIATIONS)?;
     m.add_class::<PlausibleTrack>()
 }

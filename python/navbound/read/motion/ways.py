@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import polars as pl
 
+from navbound import _core
 from navbound.read.checks.places import east_north_m, wrapped
 
 if TYPE_CHECKING:
@@ -32,8 +33,8 @@ _LEG_TURN_RAD, _SHORTEST_LEG_S = math.radians(60.0), 1.0
 Provenance: ours. [rad, s]"""
 OFFSET_M = 3.0 * WINDOW_S
 """Difference of ways over a window that shows nothing, 3 m/s: rounding, wind on a filtered track, a slow filter. Provenance: ours. [m]"""
-_DEVIATIONS = 6.0
-"""Noise of two positions, in standard deviations of the covariance. Provenance: ours."""
+_DEVIATIONS = _core.DRIFT_DEVIATIONS
+"""Noise of two positions, in standard deviations of the covariance."""
 
 
 @dataclass(frozen=True)
