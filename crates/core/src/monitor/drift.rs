@@ -35,12 +35,9 @@ const MOVING_MPS: f64 = 5.0;
 const WINDOW_NS: i64 = 60_000_000_000;
 /// Between two statements that are further apart speed and track may have been any \[ns\]. Provenance: ours.
 const EVEN_NS: i64 = 10_000_000_000;
-/// Legs of the way that positions travel: the noise of each step would add up to a way of its own \[ns\]. Provenance: ours.
-const LEG_NS: i64 = 10_000_000_000;
-/// A source that repeats a speed and a track for this long may have no others: where the positions turn meanwhile nothing is compared
-/// \[ns\]. Provenance: ours.
+/// A source that repeats a speed and a track for this long may have no others \[ns\]. Provenance: ours.
 const REPEATED_NS: i64 = 10_000_000_000;
-/// Minutes on end of which nothing is compared for that: recordings of Paris have a minute and a half. Provenance: ours.
+/// So many minutes are not compared for that where positions leave a way that they were on: a recording of Paris has three. Provenance: ours.
 const REPEATED: u32 = 3;
 
 /// Of minutes on end, to one side.
@@ -129,7 +126,7 @@ impl Sums {
 
     fn straight(&mut self, aside_m: [f64; 2], way_m: f64, length_s: f64, noise_m: f64) {
         for ((sides, worst), grid_deg) in self.sides.iter_mut().zip(&mut self.worst).zip(GRIDS_DEG) {
-            let allowed_m = SHARE.max(ROUNDED + grid_deg.to_radians()) * way_m + DRIFT_MPS * length_s;
+            let allowed_m = allowed_m(grid_deg, way_m, length_s);
             for (side, aside_m) in sides.iter_mut().zip(aside_m) {
                 side.see(aside_m, allowed_m, way_m, noise_m);
                 let over_m = side.over_m();
@@ -191,14 +188,12 @@ pub struct Window {
     pub begin: At,
     /// The last report.
     pub last: At,
-    /// Where the last leg began.
-    pub leg: At,
     /// Since when speed and track are what they are \[ns\].
     pub since_ns: i64,
     /// The longest time for which they were repeated \[ns\].
     pub repeated_ns: i64,
-    /// By the speeds, and by legs of the positions \[m\].
-    pub ways_m: [f64; 2],
+    /// By the speeds \[m\].
+    pub way_m: f64,
     /// East and north, where speed and track lead \[m\].
     pub lead_m: [f64; 2],
     /// East and north, where the positions went \[m\].
@@ -207,8 +202,7 @@ pub struct Window {
 
 impl Window {
     const fn begin(at: At) -> Self {
-        let (since_ns, none_m) = (at.time_ns, [0.0; 2]);
-        Self { begin: at, last: at, leg: at, since_ns, repeated_ns: 0, ways_m: none_m, lead_m: none_m, moved_m: none_m }
+        Self { begin: at, last: at, since_ns: at.time_ns, repeated_ns: 0, way_m: 0.0, lead_m: [0.0; 2], moved_m: [0.0; 2] }
     }
 
     /// A step of a steady turn is a chord in the mean direction of its ends.
@@ -221,10 +215,7 @@ impl Window {
         self.lead_m = [self.lead_m[0] + chord_m * sin(towards), self.lead_m[1] + chord_m * cos(towards)];
         let [east, north] = self.last.way_to(&at);
         self.moved_m = [self.moved_m[0] + east, self.moved_m[1] + north];
-        self.ways_m[0] += even_m;
-        if at.time_ns.saturating_sub(self.leg.time_ns) >= LEG_NS {
-            self.close_leg(at);
-        }
+        self.way_m += even_m;
         if at.speed_mps != self.last.speed_mps || at.track_rad != self.last.track_rad {
             self.since_ns = at.time_ns;
         }
@@ -232,17 +223,9 @@ impl Window {
         self.last = at;
     }
 
-    fn close_leg(&mut self, at: At) {
-        let [east, north] = self.leg.way_to(&at);
-        self.ways_m[1] += hypot(east, north);
-        self.leg = at;
-    }
-
     /// What it is, where it is one to judge.
-    fn minute(mut self) -> Option<Minute> {
-        self.close_leg(self.last);
-        let [way_m, by_legs_m] = self.ways_m;
-        let length_s = self.last.time_ns.saturating_sub(self.begin.time_ns) as f64 * 1e-9;
+    fn minute(&self) -> Option<Minute> {
+        let (way_m, length_s) = (self.way_m, self.last.time_ns.saturating_sub(self.begin.time_ns) as f64 * 1e-9);
         let [[lead_east, lead_north], [east, north]] = [self.lead_m, self.moved_m];
         let (lead_m, moved_m) = (hypot(lead_east, lead_north), hypot(east, north));
         let noise_m = DEVIATIONS * hypot(self.begin.sigma_m, self.last.sigma_m);
@@ -253,8 +236,7 @@ impl Window {
         let backwards = east * lead_east + north * lead_north < 0.0;
         // What goes backwards is on neither side.
         let sides_m = if backwards { [moved_m; 2] } else { [aside_m, -aside_m] };
-        let repeats = self.repeated_ns >= REPEATED_NS && moved_m + noise_m < STRAIGHT * by_legs_m;
-        Some(Minute { sides_m, way_m, length_s, noise_m, repeats })
+        Some(Minute { sides_m, way_m, length_s, noise_m })
     }
 }
 
@@ -265,8 +247,20 @@ struct Minute {
     way_m: f64,
     length_s: f64,
     noise_m: f64,
-    /// Whether the positions turned while the source repeated itself.
-    repeats: bool,
+}
+
+impl Minute {
+    /// Whether the positions are on the way that speed and track lead, as far as the coarsest course says.
+    fn fits(&self) -> bool {
+        let [.., coarsest_deg] = GRIDS_DEG;
+        let allowed_m = allowed_m(coarsest_deg, self.way_m, self.length_s) + self.noise_m;
+        self.sides_m.into_iter().all(|aside_m| aside_m <= allowed_m)
+    }
+}
+
+/// What positions may go aside in a minute, beside noise.
+fn allowed_m(grid_deg: f64, way_m: f64, length_s: f64) -> f64 {
+    SHARE.max(ROUNDED + grid_deg.to_radians()) * way_m + DRIFT_MPS * length_s
 }
 
 /// The drifts of one track whose reports arrive. No heap.
@@ -274,7 +268,9 @@ struct Minute {
 pub struct Drift {
     /// The minute that is open.
     pub window: Option<Window>,
-    /// Minutes on end in which the positions turned while the source repeated itself.
+    /// Whether the positions were on the way that the track leads.
+    pub fitted: bool,
+    /// Minutes in which they were not any more, of a source that repeats itself.
     pub repeats: u32,
     /// Of the minutes before.
     pub sums: Sums,
@@ -303,14 +299,26 @@ impl Drift {
         }
         window.step(at);
         if at.time_ns.saturating_sub(window.begin.time_ns) >= WINDOW_NS {
-            if let Some(Minute { sides_m, way_m, length_s, noise_m, repeats }) = window.minute() {
-                self.repeats = if repeats { self.repeats.saturating_add(1) } else { 0 };
-                if !(1..=REPEATED).contains(&self.repeats) {
-                    self.sums.straight(sides_m, way_m, length_s, noise_m);
-                }
+            let (minute, repeated) = (window.minute(), window.repeated_ns >= REPEATED_NS);
+            if !repeated {
+                self.repeats = 0;
+            }
+            if let Some(minute) = minute {
+                self.judge(&minute, repeated);
             }
             self.window = Some(Window::begin(at));
         }
+    }
+
+    /// Positions that leave the way of a source which repeats itself may be right: it may have no other speed and track for a while.
+    fn judge(&mut self, minute: &Minute, repeated: bool) {
+        let fits = minute.fits();
+        if repeated && self.fitted && !fits && self.repeats < REPEATED {
+            self.repeats += 1;
+            return;
+        }
+        self.fitted = fits;
+        self.sums.straight(minute.sides_m, minute.way_m, minute.length_s, minute.noise_m);
     }
 
     /// The drift of the track, by all that was seen, where it is more than it may be.

@@ -205,17 +205,32 @@ fn a_silence_ends_a_minute_and_not_the_sum() {
     assert_eq!(pieces.drifted(0.0), None);
 }
 
-/// A source that repeats speed and track for a minute and a half while the aircraft turns, and one that never states others.
+/// A source that repeats speed and track for three minutes, beginning in any part of a turn, as a recording of Paris does; and one that has no
+/// other at all.
 #[test]
-fn a_statement_that_is_repeated_in_a_turn_contradicts_only_where_it_lasts() {
-    let rate = |time_s: f64| if (300.0..345.0).contains(&time_s) { f64::to_radians(2.0) } else { 0.0 };
-    for begin_s in (230..=300).step_by(10) {
-        let repeats = |track_rad: f64, k: u32| if (begin_s..begin_s + 110).contains(&k) { 0.3 } else { track_rad };
-        let flight = Flight { rate_radps: &rate, reported: &repeats, speed_mps: 110.0, ..STRAIGHT_ON };
-        assert_eq!(flight.drifted(0.3), None, "{begin_s}");
+fn a_statement_that_is_repeated_contradicts_only_where_it_lasts() {
+    for turn_deg in [10.0, 36.0, 90.0, 150.0] {
+        let rate = |time_s: f64| if (300.0..330.0).contains(&time_s) { f64::to_radians(turn_deg / 30.0) } else { 0.0 };
+        for begin_s in (240..=330).step_by(10) {
+            for straight_deg in [0.0, 0.1] {
+                // While it flies straight the track changes by its last digit, or does not.
+                let repeats = |track_rad: f64, k: u32| {
+                    if (begin_s..begin_s + 165).contains(&k) { 0.3 } else { track_rad + f64::to_radians(straight_deg) * f64::from(k % 2) }
+                };
+                let flight = Flight { rate_radps: &rate, reported: &repeats, speed_mps: 205.0, ..STRAIGHT_ON };
+                assert_eq!(flight.drifted(0.3), None, "{turn_deg} {begin_s} {straight_deg}");
+            }
+        }
+        let for_good = Flight { rate_radps: &rate, reported: &|_, _| 0.3, speed_mps: 205.0, ..STRAIGHT_ON };
+        assert!(for_good.drifted(0.3).unwrap().1 <= 660, "{turn_deg}");
     }
     let circling = Flight { rate_radps: &|_| f64::to_radians(1.0), reported: &|_, _| 0.3, ..STRAIGHT_ON };
     assert!(circling.drifted(0.3).unwrap().1 <= 600);
+    // To either side in turn, and on the way between: what is left out once is not again.
+    let rate =
+        |time_s: f64| if time_s % 240.0 < 20.0 { f64::to_radians([3.0, -3.0, -3.0, 3.0][(time_s / 240.0) as usize % 4]) } else { 0.0 };
+    let wanders = Flight { seconds: 3600, rate_radps: &rate, reported: &|_, _| 0.3, ..STRAIGHT_ON };
+    assert!(wanders.drifted(0.3).is_some());
 }
 
 #[test]
