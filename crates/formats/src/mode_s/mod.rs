@@ -62,6 +62,8 @@ pub enum Content {
     Velocity {
         /// Speed over the ground \[m/s\].
         ground_speed_mps: Option<f64>,
+        /// Track over the ground from true north; none of an aircraft that stands \[rad\].
+        ground_track_rad: Option<f64>,
         /// Geometric less barometric height \[m\].
         geometric_less_pressure_m: Option<f64>,
     },
@@ -171,16 +173,23 @@ fn metres(feet: f64) -> f64 {
 
 fn velocity(field: Field, subtype: u64) -> Content {
     // A part of zero is none, one means standing.
-    let part = |first: u32| field.bits(first, first + 9).checked_sub(1).map(|knots| knots as f64);
-    let knots = match subtype {
-        1 | 2 => part(15).zip(part(26)).map(|(east, north)| libm::hypot(east, north)),
-        _ => None,
+    let part = |first: u32| {
+        let length = field.bits(first, first + 9).checked_sub(1).map(|knots| knots as f64);
+        // Before each stands whether it leads to the west, to the south.
+        length.map(|knots| if field.flag(first - 1) { -knots } else { knots })
     };
+    let parts = if matches!(subtype, 1 | 2) { part(15).zip(part(26)) } else { None };
+    let knots = parts.map(|(east, north)| libm::hypot(east, north));
+    let ground_track_rad = parts.filter(|parts| *parts != (0.0, 0.0)).map(|(east, north)| libm::atan2(east, north));
     // Above the speed of sound a step is four knots.
     let step = if subtype == 2 { 4.0 } else { 1.0 };
     let sign = if field.flag(49) { -1.0 } else { 1.0 };
     let difference_ft = field.bits(50, 56).checked_sub(1).map(|steps| sign * STEP_FT * steps as f64);
-    Content::Velocity { ground_speed_mps: knots.map(|knots| knots * step * KNOT_MPS), geometric_less_pressure_m: difference_ft.map(metres) }
+    Content::Velocity {
+        ground_speed_mps: knots.map(|knots| knots * step * KNOT_MPS),
+        ground_track_rad,
+        geometric_less_pressure_m: difference_ft.map(metres),
+    }
 }
 
 /// The message of a line as receivers print them: `*8D4840D6202CC371C32CE0576098;`, with the counter of the receiver behind `@` instead.

@@ -75,13 +75,15 @@ fn altitude_and_speed_are_those_of_published_messages() {
         panic!("no position")
     };
     assert!((pressure_altitude_m.unwrap() - 38_000.0 * 0.3048).abs() < 1e-9);
-    let Content::Velocity { ground_speed_mps, geometric_less_pressure_m } =
+    let Content::Velocity { ground_speed_mps, ground_track_rad, geometric_less_pressure_m } =
         squitter(&message("8D485020994409940838175B284F")).unwrap().unwrap().content
     else {
         panic!("no velocity")
     };
     // By the texts 159.20 kt, of 8 kt and 159 kt; geometric height 550 ft above the barometric.
     assert!((ground_speed_mps.unwrap() - 8.0_f64.hypot(159.0) * 1852.0 / 3600.0).abs() < 1e-9);
+    // By the texts 182.88 degrees: 8 kt to the west, 159 kt to the south.
+    assert!((ground_track_rad.unwrap().to_degrees().rem_euclid(360.0) - 182.880_4).abs() < 1e-3);
     assert!((geometric_less_pressure_m.unwrap() - 550.0 * 0.3048).abs() < 1e-9);
 }
 

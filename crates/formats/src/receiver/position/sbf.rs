@@ -76,6 +76,7 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
         h_m: Some(place[2]),
         covariance_m2,
         ground_speed_mps: velocity.map(|[n, e, _]| libm::hypot(n, e)),
+        ground_track_rad: geodetic.and_then(|_| stated(pvt, [48])).map(|[course_deg]| course_deg.to_radians()),
         vertical_rate_mps: velocity.map(|[_, _, u]| u),
         n_sv: u8_at(pvt, 66).map(u32::from),
         hdop: ratio(12),

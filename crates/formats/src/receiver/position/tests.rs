@@ -101,6 +101,23 @@ fn a_week_beyond_every_time_is_outside_its_domain() {
     }
 }
 
+/// Of PVTGeodetic; a receiver that stands states none.
+#[test]
+fn the_course_over_ground_is_that_of_its_field() {
+    for (course_deg, expected) in [(90.0_f32, Some(90.0)), (-2e10, None)] {
+        let mut body = vec![0; 68];
+        body[4..6].copy_from_slice(&2361_u16.to_le_bytes());
+        body[6] = 1;
+        body[8..16].copy_from_slice(&0.5_f64.to_le_bytes());
+        body[48..52].copy_from_slice(&course_deg.to_le_bytes());
+        let mut out = Vec::new();
+        let mut decoder = Decoder::new(Kind::Sbf, Ends::WithNext);
+        decoder.take(&Frame::Sbf { block: 4007, body: &body }, 1, &mut out);
+        decoder.finish(&mut out);
+        assert_eq!(positions(&out).first().and_then(|p| p.ground_track_rad.map(f64::to_degrees)), expected);
+    }
+}
+
 fn sentence(body: &str) -> Vec<u8> {
     let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
     format!("${body}*{sum:02X}\r\n").into_bytes()
