@@ -8,7 +8,8 @@ use crate::track::Track;
 use navbound_core::bound::{AlertBound, anp};
 use navbound_core::frame::{Covariance, LatLon, counts_as_zero};
 use navbound_core::judge::{Evaluated, Judged, Sample};
-use navbound_core::monitor::balance::{At, Balance};
+use navbound_core::monitor::balance::{self, Balance};
+use navbound_core::monitor::drift::{self, Drift};
 use navbound_core::monitor::motion::{Finding, Motion, Report};
 use navbound_core::monitor::neighbours::{Height, Neighbours, Place};
 use navbound_core::monitor::rnp::{Acceptance, Event};
@@ -133,16 +134,28 @@ fn believed(settings: &Settings, track: &mut Track, position: &Position) -> Posi
     };
     // A position that is merely late may contradict those before it all the same: the graver word counts.
     let reason = if finding == Some(Reason::PositionLate) { restless().or(finding) } else { finding.or_else(restless) };
-    // What is doubted by itself is no part of the way; the time goes on over it. What is behind stays so where it is held besides.
-    let behind = match reason {
-        None => {
-            track.balance.see(At { time_ns: position.time.nanoseconds(), lat_rad, lon_rad, speed_mps });
-            track.balance.behind_m().is_some()
-        }
-        Some(reason) => reason.status().usable() && track.balance.behind_m().is_some(),
-    };
-    let reason = if behind { Some(Reason::PositionStale) } else { reason };
+    // What is doubted by itself is no part of the way; the time goes on over it. What is behind, or drifts, does so where it is held besides.
+    if reason.is_none() {
+        follow(track, position, [lat_rad, lon_rad, speed_mps]);
+    }
+    let reason = if reason.is_none_or(|reason| reason.status().usable()) { led_off(track).or(reason) } else { reason };
     reason.map_or(*position, |reason| position.without(reason))
+}
+
+/// The way of the track goes on to a place that is believed.
+fn follow(track: &mut Track, position: &Position, [lat_rad, lon_rad, speed_mps]: [f64; 3]) {
+    let time_ns = position.time.nanoseconds();
+    track.balance.see(balance::At { time_ns, lat_rad, lon_rad, speed_mps });
+    let track_rad = position.ground_track_rad.unwrap_or(f64::NAN);
+    let sigma_m = position.covariance_m2.map_or(0.0, |[ee, _, nn, ..]| (ee + nn).sqrt());
+    let sigma_m = if sigma_m.is_finite() { sigma_m } else { 0.0 };
+    track.drift.see(drift::At { time_ns, lat_rad, lon_rad, speed_mps, track_rad, sigma_m });
+}
+
+/// Why nothing of the track is believed any more.
+fn led_off(track: &Track) -> Option<Reason> {
+    let behind = track.balance.behind_m().map(|_| Reason::PositionStale);
+    behind.or_else(|| track.drift.drifted().map(|_| Reason::DirectionContradicts))
 }
 
 /// Judges a record and says what became of it. A fault of ours makes this epoch of this track unusable, and nothing else; whether one happened.
@@ -173,7 +186,8 @@ pub(crate) fn judge(settings: &Settings, id: TrackId, track: &mut Track, arrived
     }
     if judged.step.acceptance == Acceptance::ClockSetBack {
         track.incarnation = track.incarnation.saturating_add(1);
-        (track.motion, track.neighbours, track.balance) = (Motion::default(), Neighbours::default(), Balance::default());
+        (track.motion, track.neighbours) = (Motion::default(), Neighbours::default());
+        (track.balance, track.drift) = (Balance::default(), Drift::default());
     }
     if matches!(judged.step.acceptance, Acceptance::Accepted | Acceptance::ClockSetBack) {
         let next = track.last.map(|last| last.plus_seconds(settings.judge.monitor.chain.sample_period_s));

@@ -60,6 +60,8 @@ pub struct Position {
     pub course_rad: Option<f64>,
     /// Speed over the ground, by which the motion of the positions is judged \[m/s\].
     pub ground_speed_mps: Option<f64>,
+    /// Track over the ground from true north, by which the direction of that motion is judged \[rad\].
+    pub ground_track_rad: Option<f64>,
     /// Covariance ee, en, nn, eu, nu, uu \[m²\].
     pub covariance_m2: Option<[f64; 6]>,
     /// Horizontal protection level \[m\].
@@ -122,6 +124,7 @@ impl Position {
             fte_m: None,
             course_rad: None,
             ground_speed_mps: None,
+            ground_track_rad: None,
             covariance_m2: None,
             hpl_m: None,
             rnp_m: None,
@@ -168,8 +171,8 @@ impl Position {
         to.f64(self.age_s);
         to.u8(self.status as u8);
         to.option(self.reason, |to, reason| to.u8(reason as u8));
-        let numbers = [self.lat_rad, self.lon_rad, self.h_m, self.fte_m, self.course_rad, self.ground_speed_mps, self.hpl_m, self.rnp_m];
-        numbers.into_iter().for_each(|number| to.option(number, Writer::f64));
+        let of_motion = [self.lat_rad, self.lon_rad, self.h_m, self.fte_m, self.course_rad, self.ground_speed_mps, self.ground_track_rad];
+        of_motion.into_iter().chain([self.hpl_m, self.rnp_m]).for_each(|number| to.option(number, Writer::f64));
         to.option(self.covariance_m2, |to, covariance| covariance.into_iter().for_each(|term| to.f64(term)));
         self.shown.write(to);
     }
@@ -180,7 +183,7 @@ impl Position {
         let reason = from.option(reason)?;
         let mut number = || from.option(Reader::f64);
         let (lat_rad, lon_rad, h_m, fte_m) = (number()?, number()?, number()?, number()?);
-        let (course_rad, ground_speed_mps, hpl_m, rnp_m) = (number()?, number()?, number()?, number()?);
+        let (course_rad, ground_speed_mps, ground_track_rad, hpl_m, rnp_m) = (number()?, number()?, number()?, number()?, number()?);
         let covariance_m2 = from.option(|from| {
             let mut terms = [0.0; 6];
             for term in &mut terms {
@@ -201,6 +204,7 @@ impl Position {
             fte_m,
             course_rad,
             ground_speed_mps,
+            ground_track_rad,
             covariance_m2,
             hpl_m,
             rnp_m,

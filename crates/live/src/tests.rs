@@ -10,6 +10,7 @@ use proptest::prelude::*;
 use std::fmt::Write;
 use std::sync::Arc;
 
+mod directions;
 mod places;
 
 const T0_NS: i64 = 1_447_500_000_000_000_000;
@@ -36,6 +37,12 @@ fn settings() -> Settings {
                     vec!["dest".into(), "airport".into()],
                     vec!["irs".into()],
                     vec!["geom".into(), "coordinates".into()],
+                    vec!["counter".into()],
+                    vec!["hemisphere".into()],
+                    vec!["s".into()],
+                    vec!["n".into()],
+                    vec!["w".into()],
+                    vec!["e".into()],
                 ],
                 [1852.0, 18_520.0],
             ),

@@ -8,6 +8,7 @@ use navbound_core::frame::EcefPosition;
 use navbound_core::judge::{self, Judge};
 use navbound_core::monitor::ahead::{Ahead, Reached};
 use navbound_core::monitor::balance::{At, Balance, Window};
+use navbound_core::monitor::drift::{self, Drift, Drifted, Side, Sums};
 use navbound_core::monitor::motion::{LastSpeed, Motion, Report};
 use navbound_core::monitor::neighbours::{Height, Neighbours, Place};
 use navbound_core::monitor::standing::{Fall, Gone, Owed, Resumed, Stood};
@@ -34,6 +35,8 @@ pub(crate) struct Track {
     pub(crate) neighbours: Neighbours,
     /// Its way, and that by its speeds.
     pub(crate) balance: Balance,
+    /// How far it goes aside of where its reported track leads.
+    pub(crate) drift: Drift,
     pub(crate) waiting: Waiting,
     /// Whether a record of it stated an RNP.
     pub(crate) states_rnp: bool,
@@ -55,6 +58,7 @@ impl Track {
             motion: Motion::default(),
             neighbours: Neighbours::default(),
             balance: Balance::default(),
+            drift: Drift::default(),
             waiting: Waiting::default(),
             states_rnp: false,
             stated: Stated::default(),
@@ -145,6 +149,7 @@ impl Track {
             });
         }
         balance(to, &self.balance);
+        drift(to, &self.drift);
         self.waiting.write(to);
         to.flag(self.states_rnp);
         to.option(self.stated.largest_m2, Writer::f64);
@@ -210,11 +215,11 @@ impl Track {
             Ok(Place { time, lat_rad: from.f64()?, lon_rad: from.f64()?, variance_m2: from.f64()? })
         };
         let neighbours = Neighbours { last: [from.option(place)?, from.option(place)?] };
-        let (balance, waiting) = (read_balance(from)?, Waiting::read(from)?);
+        let (balance, drift, waiting) = (read_balance(from)?, read_drift(from)?, Waiting::read(from)?);
         let states_rnp = from.flag()?;
         let stated = Stated { largest_m2: from.option(Reader::f64)?, lost: from.flag()? };
         let silent = from.flag()?;
-        Ok(Self { judge, incarnation, open, last, stepped, along, motion, neighbours, balance, waiting, states_rnp, stated, silent })
+        Ok(Self { judge, incarnation, open, last, stepped, along, motion, neighbours, balance, drift, waiting, states_rnp, stated, silent })
     }
 }
 
@@ -285,4 +290,57 @@ fn read_balance(from: &mut Reader<'_>) -> Result<Balance, Damaged> {
         })
     })?;
     Ok(Balance { window, ways_m: [from.f64()?, from.f64()?] })
+}
+
+fn drift(to: &mut Writer, drift: &Drift) {
+    to.option(drift.window, |to, window| {
+        for at in [window.begin, window.last] {
+            to.i64(at.time_ns);
+            [at.lat_rad, at.lon_rad, at.speed_mps, at.track_rad, at.sigma_m].into_iter().for_each(|number| to.f64(number));
+        }
+        [window.since_ns, window.repeated_ns].into_iter().for_each(|time_ns| to.i64(time_ns));
+        to.f64(window.way_m);
+        window.lead_m.into_iter().chain(window.moved_m).for_each(|number| to.f64(number));
+    });
+    to.flag(drift.fitted);
+    to.u32(drift.repeats);
+    for side in drift.sums.sides.as_flattened() {
+        [side.beyond_m, side.aside_m, side.way_m, side.noise_m].into_iter().for_each(|number| to.f64(number));
+        to.u32(side.n);
+    }
+    for worst in drift.sums.worst {
+        [worst.over_m, worst.aside_m, worst.way_m].into_iter().for_each(|number| to.f64(number));
+        to.u32(worst.n);
+    }
+    drift.sums.on_grid.into_iter().for_each(|on_grid| to.flag(on_grid));
+}
+
+fn read_drift(from: &mut Reader<'_>) -> Result<Drift, Damaged> {
+    let at = |from: &mut Reader<'_>| {
+        let time_ns = from.i64()?;
+        let [lat_rad, lon_rad, speed_mps, track_rad, sigma_m] = [from.f64()?, from.f64()?, from.f64()?, from.f64()?, from.f64()?];
+        Ok(drift::At { time_ns, lat_rad, lon_rad, speed_mps, track_rad, sigma_m })
+    };
+    let window = from.option(|from| {
+        Ok(drift::Window {
+            begin: at(from)?,
+            last: at(from)?,
+            since_ns: from.i64()?,
+            repeated_ns: from.i64()?,
+            way_m: from.f64()?,
+            lead_m: [from.f64()?, from.f64()?],
+            moved_m: [from.f64()?, from.f64()?],
+        })
+    })?;
+    let mut drift = Drift { window, fitted: from.flag()?, repeats: from.u32()?, sums: Sums::default() };
+    for side in drift.sums.sides.as_flattened_mut() {
+        *side = Side { beyond_m: from.f64()?, aside_m: from.f64()?, way_m: from.f64()?, noise_m: from.f64()?, n: from.u32()? };
+    }
+    for worst in &mut drift.sums.worst {
+        *worst = Drifted { over_m: from.f64()?, aside_m: from.f64()?, way_m: from.f64()?, n: from.u32()? };
+    }
+    for on_grid in &mut drift.sums.on_grid {
+        *on_grid = from.flag()?;
+    }
+    Ok(drift)
 }

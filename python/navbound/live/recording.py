@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
 EPOCHS = "epochs.parquet"
 _SHOWN = ("fte_v_m", "vpl_m", "hal_m", "val_m", "n_sv", "nav_mode")
-_NUMBERS = ("est_lat_rad", "est_lon_rad", "est_h_m", "fte_m", "course_rad", "ground_speed_mps", *COVARIANCE, "hpl_m", "rnp_m", *_SHOWN)
+_MOTION = ("est_lat_rad", "est_lon_rad", "est_h_m", "fte_m", "course_rad", "ground_speed_mps", "ground_track_rad")
+_NUMBERS = (*_MOTION, *COVARIANCE, "hpl_m", "rnp_m", *_SHOWN)
 
 
 def has_path(run: Path) -> bool:

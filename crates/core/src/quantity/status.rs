@@ -269,6 +269,9 @@ reasons! {
         "the filter has found biases that its unit does not have as declared: the unit or the positions are wrong";
     /// Of positions from observations.
     CodesLedOff, "codes_led_off", Degraded, "the codes of the satellites moved together as their carrier phases did not";
+    /// Of live positions.
+    DirectionContradicts, "direction_contradicts", NotAvailable,
+        "the positions do not go where the reported track leads: they are wrong, or it is a heading, magnetic, or another direction";
 }
 
 impl Reason {

@@ -36,6 +36,8 @@ struct Line<'a> {
     #[serde(default, deserialize_with = "number")]
     ground_speed_mps: Option<f64>,
     #[serde(default, deserialize_with = "number")]
+    ground_track_rad: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
     sigma_m: Option<f64>,
     #[serde(default, deserialize_with = "number")]
     cov_ee_m2: Option<f64>,
@@ -68,7 +70,7 @@ struct Line<'a> {
 }
 
 /// The keys of [`Line`].
-const KEYS: [&str; 25] = [
+const KEYS: [&str; 26] = [
     "v",
     "track",
     "time_ns",
@@ -79,6 +81,7 @@ const KEYS: [&str; 25] = [
     "fte_m",
     "course_rad",
     "ground_speed_mps",
+    "ground_track_rad",
     "sigma_m",
     "cov_ee_m2",
     "cov_en_m2",
@@ -199,6 +202,7 @@ fn whole(line: &Line<'_>) -> Decoded {
         fte_m: line.fte_m,
         course_rad: line.course_rad,
         ground_speed_mps: line.ground_speed_mps.and_then(|written| stated_mps(written, 1.0)),
+        ground_track_rad: line.ground_track_rad,
         covariance_m2: line.covariance(),
         // A level of nothing bounds nothing.
         hpl_m: line.hpl_m.map(|level| if level > 0.0 { level } else { f64::NAN }),

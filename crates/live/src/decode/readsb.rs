@@ -42,6 +42,9 @@ struct Line<'a> {
     alt_geom: Option<f64>,
     #[serde(default)]
     gs: Option<f64>,
+    /// Track over the ground from true north \[deg\].
+    #[serde(default)]
+    track: Option<f64>,
     #[serde(default)]
     nic: Option<u8>,
     /// Radius of containment, 0 where there is none \[m\].
@@ -177,6 +180,7 @@ pub(super) fn position(bytes: &[u8], claims: &Claims, statements: &Statements) -
         h_m: line.alt_geom.map(|feet| Metres::feet(feet).m()),
         age_s: if of_the_future { 0.0 } else { age_s.max(0.0) },
         ground_speed_mps: line.gs.and_then(|knots| stated_mps(knots, KNOT_MPS)),
+        ground_track_rad: line.track.filter(|_| !listed("track")).map(f64::to_radians),
         shown: Shown { claim, ..Shown::default() },
         ..Position::new(track, time)
     };

@@ -24,6 +24,7 @@ pub(super) fn decoded(item: Item, track: TrackId) -> Option<Decoded> {
                 lon_rad: position.lon_rad,
                 h_m: position.h_m,
                 ground_speed_mps: position.ground_speed_mps,
+                ground_track_rad: position.ground_track_rad,
                 covariance_m2: position.covariance_m2,
                 hpl_m: position.hpl_m,
                 status: if usable { Status::Ok } else { Status::NotAvailable },

@@ -50,6 +50,7 @@ struct Aircraft {
     supplement_a: Heard<bool>,
     categories: Heard<Categories>,
     ground_speed_mps: Heard<f64>,
+    ground_track_rad: Heard<f64>,
     geometric_less_pressure_m: Heard<f64>,
     /// The last half of the even and of the odd format.
     halves: [Heard<Cpr>; 2],
@@ -93,13 +94,15 @@ impl Sky {
                     lon_rad: Some(fix.lon_deg.to_radians()),
                     h_m: pressure_altitude_m.zip(difference_m).map(|(altitude, difference)| altitude + difference),
                     ground_speed_mps: recent(aircraft.ground_speed_mps, now_ns, MOTION_NS),
+                    ground_track_rad: recent(aircraft.ground_track_rad, now_ns, MOTION_NS),
                     ..Position::new(track, now)
                 };
                 Ok(aircraft.claimed(known, code, supplement_b, claims))
             })),
             // On the surface only a place nearby tells where; a source without a position has none.
             Content::Surface | Content::Without => Some(Err(Refused::NoPosition)),
-            Content::Velocity { ground_speed_mps, geometric_less_pressure_m } => {
+            Content::Velocity { ground_speed_mps, ground_track_rad, geometric_less_pressure_m } => {
+                aircraft.ground_track_rad = ground_track_rad.map(|track| (track, now_ns));
                 aircraft.ground_speed_mps = ground_speed_mps.map(|speed| (speed, now_ns));
                 aircraft.geometric_less_pressure_m = geometric_less_pressure_m.map(|difference| (difference, now_ns));
                 None
@@ -262,6 +265,7 @@ impl Aircraft {
             to.u8(categories.sil);
         });
         write_heard(to, self.ground_speed_mps, Writer::f64);
+        write_heard(to, self.ground_track_rad, Writer::f64);
         write_heard(to, self.geometric_less_pressure_m, Writer::f64);
         for half in self.halves {
             write_heard(to, half, |to, cpr| {
@@ -282,14 +286,25 @@ impl Aircraft {
         let (heard_ns, version) = (from.i64()?, from.u8()?);
         let supplement_a = read_heard(from, Reader::flag)?;
         let categories = read_heard(from, |from| Ok(Categories { nac_p: from.u8()?, sil: from.u8()? }))?;
-        let (ground_speed_mps, geometric_less_pressure_m) = (read_heard(from, Reader::f64)?, read_heard(from, Reader::f64)?);
+        let mut number = || read_heard(from, Reader::f64);
+        let (ground_speed_mps, ground_track_rad, geometric_less_pressure_m) = (number()?, number()?, number()?);
         let mut half = || read_heard(from, |from| Ok(Cpr { odd: from.flag()?, lat: from.u32()?, lon: from.u32()? }));
         let halves = [half()?, half()?];
         let placed = from.option(|from| {
             let fix = Fix { lat_deg: from.f64()?, lon_deg: from.f64()? };
             Ok(Placed { fix, at_ns: from.i64()?, confirmed: from.flag()? })
         })?;
-        Ok(Self { heard_ns, version, supplement_a, categories, ground_speed_mps, geometric_less_pressure_m, halves, placed })
+        Ok(Self {
+            heard_ns,
+            version,
+            supplement_a,
+            categories,
+            ground_speed_mps,
+            ground_track_rad,
+            geometric_less_pressure_m,
+            halves,
+            placed,
+        })
     }
 }
 

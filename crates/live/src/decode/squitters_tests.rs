@@ -32,7 +32,7 @@ fn at(s: f64) -> Option<GpsTime> {
 fn flown(n: u32) -> (Sky, Vec<Option<Decoded>>) {
     let mut sky = Sky::default();
     sky.take(&squitter(STATUS), at(0.0), &CLAIMS);
-    let moving = Content::Velocity { ground_speed_mps: Some(200.0), geometric_less_pressure_m: Some(50.0) };
+    let moving = Content::Velocity { ground_speed_mps: Some(200.0), ground_track_rad: Some(0.3), geometric_less_pressure_m: Some(50.0) };
     let decoded = (0..n).map(|k| {
         sky.take(&squitter(moving), at(0.5 * f64::from(k)), &CLAIMS);
         sky.take(&airborne(k % 2 == 1, 49.2, lon_deg(k)), at(0.5 * f64::from(k)), &CLAIMS)
@@ -58,6 +58,7 @@ fn an_aircraft_is_shown_once_two_pairs_agree() {
         assert!((position.lat_rad.unwrap().to_degrees() - 49.2).abs() < 5e-5, "steps of the code");
         assert!((position.lon_rad.unwrap().to_degrees() - lon_deg(k as u32)).abs() < 1e-4);
         assert_eq!((position.ground_speed_mps, position.h_m), (Some(200.0), Some(3050.0)));
+        assert_eq!(position.ground_track_rad, Some(0.3));
         assert_eq!(position.covariance_m2.map(|[ee, ..]| ee), Some(144.0), "the deviation of the table, squared");
     }
 }
