@@ -304,13 +304,18 @@ fn drift(to: &mut Writer, drift: &Drift) {
     });
     to.flag(drift.fitted);
     to.u32(drift.repeats);
+    // Without a minute they are what they were at first.
     for side in drift.sums.sides.as_flattened() {
-        [side.beyond_m, side.aside_m, side.way_m, side.noise_m].into_iter().for_each(|number| to.f64(number));
-        to.u32(side.n);
+        to.option(Some(side).filter(|side| side.n > 0), |to, side| {
+            [side.beyond_m, side.aside_m, side.way_m, side.noise_m].into_iter().for_each(|number| to.f64(number));
+            to.u32(side.n);
+        });
     }
     for worst in drift.sums.worst {
-        [worst.over_m, worst.aside_m, worst.way_m].into_iter().for_each(|number| to.f64(number));
-        to.u32(worst.n);
+        to.option(Some(worst).filter(|worst| worst.n > 0), |to, worst| {
+            [worst.over_m, worst.aside_m, worst.way_m].into_iter().for_each(|number| to.f64(number));
+            to.u32(worst.n);
+        });
     }
     drift.sums.on_grid.into_iter().for_each(|on_grid| to.flag(on_grid));
 }
@@ -334,10 +339,15 @@ fn read_drift(from: &mut Reader<'_>) -> Result<Drift, Damaged> {
     })?;
     let mut drift = Drift { window, fitted: from.flag()?, repeats: from.u32()?, sums: Sums::default() };
     for side in drift.sums.sides.as_flattened_mut() {
-        *side = Side { beyond_m: from.f64()?, aside_m: from.f64()?, way_m: from.f64()?, noise_m: from.f64()?, n: from.u32()? };
+        let minutes = from.option(|from| {
+            let [beyond_m, aside_m, way_m, noise_m] = [from.f64()?, from.f64()?, from.f64()?, from.f64()?];
+            Ok(Side { beyond_m, aside_m, way_m, noise_m, n: from.u32()? })
+        })?;
+        *side = minutes.unwrap_or_default();
     }
     for worst in &mut drift.sums.worst {
-        *worst = Drifted { over_m: from.f64()?, aside_m: from.f64()?, way_m: from.f64()?, n: from.u32()? };
+        let minutes = from.option(|from| Ok(Drifted { over_m: from.f64()?, aside_m: from.f64()?, way_m: from.f64()?, n: from.u32()? }))?;
+        *worst = minutes.unwrap_or(*worst);
     }
     for on_grid in &mut drift.sums.on_grid {
         *on_grid = from.flag()?;
