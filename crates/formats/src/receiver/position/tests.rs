@@ -278,8 +278,10 @@ fn what_another_sentence_says_against_a_position_takes_it_away() {
     for systems in [[gsa("GP", 3), gsa("GL", 1)], [gsa("GL", 1), gsa("GP", 3)]] {
         assert_eq!(reasons(&[ZDA, GGA, &systems[0], &systems[1], GST]), []);
     }
-    // A sentence of another time says nothing of this one.
-    assert_eq!(reasons(&[ZDA, GGA, GST, &rmc("V", "N", "4900.0000").replace("120000", "120001")]), []);
+    // A sentence of another time says nothing of this one: it is an epoch without a position.
+    let later = read_sentences(&[ZDA, GGA, GST, &rmc("V", "N", "4900.0000").replace("120000", "120001")]);
+    assert_eq!((later.positions.len(), later.absent.len(), later.left_out[0].reason), (1, 1, Reason::NoFix.id()));
+    assert_eq!(later.left_out[0].example, "RMC without a fix, and no GGA");
     // Its own count of satellites takes no position away: some receivers always write 0. A log keeps it, a stream does not use it.
     let few = read_sentences(&[ZDA, &GGA.replace(",08,", ",00,"), GST]);
     assert_eq!((few.positions.len(), few.left_out.len(), few.absent.len()), (1, 0, 0));
