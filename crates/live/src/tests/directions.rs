@@ -124,6 +124,37 @@ fn the_track_of_others_is_not_compared() {
     }
 }
 
+/// On its way for two minutes, and beside it under a speed and a track that are repeated: what was added up and what was passed over is kept.
+#[test]
+fn a_track_that_is_restored_anywhere_is_judged_alike() {
+    let (right, aside) = (Flight { seconds: 480, ..Flight::new(90.0) }, Flight { drift_mps: 40.0, ..Flight::new(90.0) });
+    let text = |k: u32| {
+        let [lat, lon] = right.place(k).map(f64::to_radians);
+        let [away, _] = aside.place(k.saturating_sub(130)).map(f64::to_radians);
+        let changes = if (60..70).contains(&k) { f64::from(k) * 1e-4 } else { 0.0 };
+        let more = format!(",\"sigma_m\":3.0,\"ground_speed_mps\":70.0,\"ground_track_rad\":{}", 90_f64.to_radians() + changes);
+        line("d", f64::from(k), &format!(",\"est_lat_rad\":{},\"est_lon_rad\":{lon}{more}", lat + away - 40_f64.to_radians()))
+    };
+    let inputs: Vec<_> = (0..right.seconds).map(|k| Input::Chunk { arrival: None, bytes: text(k).as_bytes() }.to_bytes()).collect();
+    let of = || {
+        let base = settings();
+        Settings { judge: judge::Settings { method: Alerting::of("anp-circle").unwrap(), ..base.judge }, ..base }
+    };
+    let expected = judged(&mut Lane::new(of()).unwrap(), &inputs);
+    let epochs = epochs_of(&Output::all(&expected).unwrap(), "d");
+    let first = epochs.iter().position(|epoch| epoch.reason == Some(Reason::DirectionContradicts));
+    assert!(first.is_some_and(|first| first > 300), "three minutes are passed over: {first:?}");
+    let mut first = Lane::new(of()).unwrap();
+    let mut bytes = Vec::new();
+    for cut in 0..inputs.len() {
+        if cut % 5 == 3 || cut % 60 < 3 {
+            let mut second = Lane::restore(of(), &first.snapshot(0, 0)).unwrap().0;
+            assert!([bytes.clone(), judged(&mut second, &inputs[cut..])].concat() == expected, "cut at {cut}");
+        }
+        bytes.extend(judged(&mut first, &inputs[cut..=cut]));
+    }
+}
+
 /// It begins anew as the motion does, where its clock is set back for good.
 #[test]
 fn a_track_that_begins_anew_is_believed_anew() {
