@@ -111,6 +111,16 @@ fn rows_up_to_ten_seconds_apart_are_judged() {
     }
 }
 
+/// A course that swings from row to row has turned between them, and the way is an arc.
+#[test]
+fn a_minute_that_swings_between_rows_is_not_straight() {
+    for (swing_rad, shows) in [(1.0, false), (0.05, true)] {
+        let swings = |_, k: u32| if (k / 5).is_multiple_of(2) { swing_rad } else { -swing_rad };
+        let flight = Flight { every_s: 5, reported: &swings, ..STRAIGHT_ON };
+        assert_eq!(flight.drifted(0.5 * PI).is_some(), shows, "{swing_rad}");
+    }
+}
+
 /// Statements by the second, places five times as often: those without are passed over.
 #[test]
 fn places_without_a_statement_hide_nothing() {
