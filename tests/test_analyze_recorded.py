@@ -12,8 +12,9 @@ import pytest
 
 import navbound
 from navbound import FormatError, InputError, anp, path
+from navbound.read.categories import NACP_EPU_M, NIC_RC_M, circular_sigma, nacp_sigma_m
 from navbound.read.checks.plausible import check
-from navbound.read.covariance import NACP_EPU_M, NIC_RC_M, circular_sigma, claim, nacp_sigma_m
+from navbound.read.covariance import claim
 from navbound.read.tables.epochs import read
 from navbound.records.material import Material
 from navbound.run.analyze import material

@@ -17,6 +17,8 @@ from test_live_receivers import lived
 if TYPE_CHECKING:
     import polars as pl
 
+    from navbound.run.directory import Run
+
 RNP_M, N = 0.3 * 1852.0, 60
 
 
@@ -40,7 +42,7 @@ def watched(text: str, tmp_path: Path, sigma_m: float | None = None) -> pl.DataF
     return lived(tmp_path / "log.nmea", tmp_path / "live", live.Settings(format="nmea", rnp_m=RNP_M, sigma_m=sigma_m), chunk=97)
 
 
-def analyzed(text: str, tmp_path: Path, sigma_m: float | None = None) -> navbound.Run:
+def analyzed(text: str, tmp_path: Path, sigma_m: float | None = None) -> Run:
     (tmp_path / "log.nmea").write_text(text)
     return navbound.analyze(tmp_path / "log.nmea", spec="RNP 0.3", sigma_m=sigma_m)
 

@@ -16,6 +16,7 @@ from navbound.read.columns.hemispheres import STATED, of_name
 from navbound.read.columns.naming import declare, name_parts, plain_form, words
 from navbound.read.columns.place_names import AXES, OF_HEMISPHERE, Axis, Sides, axes_of, is_no_vehicle, sides
 from navbound.read.tables.cells import in_one_text
+from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -123,7 +124,7 @@ class Hemispheres:
             for name, seen in self._seen.items():
                 are_letters = seen.are_letters(axis) or of_name(name) == axis
                 if are_letters and seen.n_against[axis] > _AGAINST * seen.n_letters[axis] and self._is_evident(name, seen, axis):
-                    n = f"at {seen.n_against[axis]} of {seen.n_letters[axis]} rows"
+                    n = f"at {seen.n_against[axis]} of {counted(seen.n_letters[axis], 'row')}"
                     yield self._words(name, axis, f"says another hemisphere than “{self._read[axis]}” is read in {n}")
 
     def _is_evident(self, name: str, seen: _Seen, axis: Axis) -> bool:
