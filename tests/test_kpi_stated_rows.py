@@ -105,7 +105,7 @@ def test_half_an_error_within_the_level_is_not_known() -> None:
     assert (result.n_mi_epochs, result.axes[0].error_m.n, result.n_solution) == (0, 9, 10)
 
 
-@pytest.mark.parametrize("errors", ["inf,0,1", "1e300,0,1", "100m,0,1", '"100,0",0,1', "0,-inf,1", "0,0,inf", "0,0,1e5 m"])
+@pytest.mark.parametrize("errors", ["inf,0,1", "1e300,0,1", "100 steps,0,1", '"100,0",0,1', "0,-inf,1", "0,0,inf", "0,0,1e5 m"])
 def test_an_error_that_is_written_and_no_number_shows_nothing(errors: str, tmp_path: Path) -> None:
     judged = verdict(tmp_path, f"{errors},15,22,10,ok,")
     assert judged.id == "not_shown"
@@ -114,7 +114,7 @@ def test_an_error_that_is_written_and_no_number_shows_nothing(errors: str, tmp_p
     assert verdict(tmp_path, f"{errors},15,22,10,not_available,").id == "inside"
 
 
-@pytest.mark.parametrize("levels", ["0,22", "-1,22", "15,0", "15m,22"])
+@pytest.mark.parametrize("levels", ["0,22", "-1,22", "15,0", "15 steps,22"])
 def test_no_level_beside_ok_shows_nothing(levels: str, tmp_path: Path) -> None:
     judged = verdict(tmp_path, f"100,0,1,{levels},10,ok,")
     assert judged.id in {"not_shown", "not_believable"}
@@ -135,3 +135,10 @@ def test_a_row_on_too_few_satellites_has_no_level(n_sv: int, status: str, has: b
     (tmp_path / "levels.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
     judged = navbound.evaluate([tmp_path / "levels.csv"], levels="LPV-200").summary.verdict
     assert (judged.id, judged.n_judged) == (("inside", N) if has else ("not_shown", N - 10))
+
+
+def test_an_error_and_a_level_with_their_unit_are_read(tmp_path: Path) -> None:
+    """An error of 100 m beside a level of 15 m."""
+    bare, with_units = (verdict(tmp_path, f"{row},22,10,ok,") for row in ("100,0,1,15", "100 m,0,1,15m"))
+    assert (with_units.id, with_units.words) == (bare.id, bare.words)
+    assert bare.id == "not_believable"

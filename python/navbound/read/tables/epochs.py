@@ -209,7 +209,8 @@ def _log(source: Source, log: receivers.Log) -> Reading:
     out = log.epochs.rename({"record": LINE}).with_columns(pl.lit(source.stem).alias("track"), pl.selectors.float().fill_nan(None))
     # Of GGA: the count of other messages is part of their fix.
     out, n_few = of_counted_satellites(out, out["few"]) if source.format.id == "nmea" else (out, 0)
-    out = out.drop("few")
+    # A format of your own has none.
+    out = out.drop("few", strict=False)
     if n_few:
         log.notes.append(
             f"{source.path.name}: {counted(n_few, 'position counts', 'positions count')} fewer satellites than determine one; "
