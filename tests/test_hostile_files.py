@@ -140,3 +140,14 @@ def test_a_header_takes_time_in_proportion_to_its_length(tmp_path: Path, kind: s
         read(path)
     assert time.process_time() - begin < BUDGET_S_PER_BYTE * len(header) + 1.0
     assert len(str(refusal.value)) < 2000
+
+
+@pytest.mark.parametrize("kind", sorted(HEADERS.keys() - {"many names", "quotation marks"}))
+def test_a_long_name_beside_a_position_takes_time_in_proportion_to_its_length(tmp_path: Path, kind: str) -> None:
+    """A table that is read to its end: names that nothing reads are looked at for other places, letters and accuracies."""
+    header = f"gps_lat_lon{HEADERS[kind](1_000_000)}b"
+    path = tmp_path / "table.csv"
+    path.write_text(f"time_s,lat,lon,{header}\n" + "".join(f"{1_700_000_000 + k},48.{k:02d},2.5,S\n" for k in range(20)))
+    begin = time.process_time()
+    assert read(path).epochs.height == 20
+    assert time.process_time() - begin < BUDGET_S_PER_BYTE * len(header) + 1.0

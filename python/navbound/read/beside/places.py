@@ -18,7 +18,7 @@ import polars as pl
 from navbound import _core
 from navbound.read.beside import utm
 from navbound.read.checks.places import east_north_m
-from navbound.read.columns.naming import name_parts
+from navbound.read.columns.naming import LONGEST_NAME, name_parts
 from navbound.read.columns.place_names import (
     INERTIAL_APART_M,
     PLACES_APART_M,
@@ -153,7 +153,8 @@ def _utm(free: Sequence[str]) -> tuple[str, str] | None:
 def _numbered(free: Sequence[str]) -> list[tuple[str, str]]:
     """Two columns that are one pair of coordinates, `gps_lat_lon_0` and `gps_lat_lon_1`."""
     pairs: dict[str, list[str]] = {}
-    for name in free:
+    # A long name has runs of blanks that a pattern would go over again from each of them.
+    for name in (name for name in free if len(name) <= LONGEST_NAME):
         stem = re.sub(r"[^A-Za-z0-9]*\d[^A-Za-z0-9]*$", "", name)
         if stem != name and is_pair(stem):
             pairs.setdefault(stem, []).append(name)
