@@ -8,8 +8,8 @@ use crate::track::Track;
 use navbound_core::bound::{AlertBound, anp};
 use navbound_core::frame::{Covariance, LatLon, counts_as_zero};
 use navbound_core::judge::{Evaluated, Judged, Sample};
-use navbound_core::monitor::balance::{self, Balance};
-use navbound_core::monitor::drift::{self, Drift};
+use navbound_core::monitor::balance::{At, Balance};
+use navbound_core::monitor::drift::{Drift, Led};
 use navbound_core::monitor::motion::{Finding, Motion, Report};
 use navbound_core::monitor::neighbours::{Height, Neighbours, Place};
 use navbound_core::monitor::rnp::{Acceptance, Event};
@@ -144,12 +144,12 @@ fn believed(settings: &Settings, track: &mut Track, position: &Position) -> Posi
 
 /// The way of the track goes on to a place that is believed.
 fn follow(track: &mut Track, position: &Position, [lat_rad, lon_rad, speed_mps]: [f64; 3]) {
-    let time_ns = position.time.nanoseconds();
-    track.balance.see(balance::At { time_ns, lat_rad, lon_rad, speed_mps });
+    let at = At { time_ns: position.time.nanoseconds(), lat_rad, lon_rad, speed_mps };
+    track.balance.see(at);
     let track_rad = position.ground_track_rad.unwrap_or(f64::NAN);
     let sigma_m = position.covariance_m2.map_or(0.0, |[ee, _, nn, ..]| (ee + nn).sqrt());
     let sigma_m = if sigma_m.is_finite() { sigma_m } else { 0.0 };
-    track.drift.see(drift::At { time_ns, lat_rad, lon_rad, speed_mps, track_rad, sigma_m });
+    track.drift.see(Led { at, track_rad, sigma_m });
 }
 
 /// Why nothing of the track is believed any more.

@@ -8,7 +8,7 @@ use navbound_core::frame::EcefPosition;
 use navbound_core::judge::{self, Judge};
 use navbound_core::monitor::ahead::{Ahead, Reached};
 use navbound_core::monitor::balance::{At, Balance, Window};
-use navbound_core::monitor::drift::{self, Drift, Drifted, Side, Sums};
+use navbound_core::monitor::drift::{self, Drift, Drifted, Led, Side, Sums};
 use navbound_core::monitor::motion::{LastSpeed, Motion, Report};
 use navbound_core::monitor::neighbours::{Height, Neighbours, Place};
 use navbound_core::monitor::standing::{Fall, Gone, Owed, Resumed, Stood};
@@ -264,12 +264,18 @@ fn read_height(from: &mut Reader<'_>) -> Result<Height, Damaged> {
     Ok(Height { h_m: from.f64()?, variance_m2: from.f64()? })
 }
 
+fn at(to: &mut Writer, at: At) {
+    to.i64(at.time_ns);
+    [at.lat_rad, at.lon_rad, at.speed_mps].into_iter().for_each(|number| to.f64(number));
+}
+
+fn read_at(from: &mut Reader<'_>) -> Result<At, Damaged> {
+    Ok(At { time_ns: from.i64()?, lat_rad: from.f64()?, lon_rad: from.f64()?, speed_mps: from.f64()? })
+}
+
 fn balance(to: &mut Writer, balance: &Balance) {
     to.option(balance.window, |to, window| {
-        for at in [window.begin, window.spoken, window.leg, window.last] {
-            to.i64(at.time_ns);
-            [at.lat_rad, at.lon_rad, at.speed_mps].into_iter().for_each(|number| to.f64(number));
-        }
+        [window.begin, window.spoken, window.leg, window.last].into_iter().for_each(|place| at(to, place));
         to.i64(window.longest_ns);
         window.moved_m.into_iter().chain(window.reported_m).for_each(|number| to.f64(number));
     });
@@ -277,13 +283,12 @@ fn balance(to: &mut Writer, balance: &Balance) {
 }
 
 fn read_balance(from: &mut Reader<'_>) -> Result<Balance, Damaged> {
-    let at = |from: &mut Reader<'_>| Ok(At { time_ns: from.i64()?, lat_rad: from.f64()?, lon_rad: from.f64()?, speed_mps: from.f64()? });
     let window = from.option(|from| {
         Ok(Window {
-            begin: at(from)?,
-            spoken: at(from)?,
-            leg: at(from)?,
-            last: at(from)?,
+            begin: read_at(from)?,
+            spoken: read_at(from)?,
+            leg: read_at(from)?,
+            last: read_at(from)?,
             longest_ns: from.i64()?,
             moved_m: [from.f64()?, from.f64()?],
             reported_m: [from.f64()?, from.f64()?],
@@ -294,9 +299,9 @@ fn read_balance(from: &mut Reader<'_>) -> Result<Balance, Damaged> {
 
 fn drift(to: &mut Writer, drift: &Drift) {
     to.option(drift.window, |to, window| {
-        for at in [window.begin, window.last] {
-            to.i64(at.time_ns);
-            [at.lat_rad, at.lon_rad, at.speed_mps, at.track_rad, at.sigma_m].into_iter().for_each(|number| to.f64(number));
+        for led in [window.begin, window.last] {
+            at(to, led.at);
+            [led.track_rad, led.sigma_m].into_iter().for_each(|number| to.f64(number));
         }
         [window.since_ns, window.repeated_ns].into_iter().for_each(|time_ns| to.i64(time_ns));
         to.f64(window.way_m);
@@ -321,15 +326,11 @@ fn drift(to: &mut Writer, drift: &Drift) {
 }
 
 fn read_drift(from: &mut Reader<'_>) -> Result<Drift, Damaged> {
-    let at = |from: &mut Reader<'_>| {
-        let time_ns = from.i64()?;
-        let [lat_rad, lon_rad, speed_mps, track_rad, sigma_m] = [from.f64()?, from.f64()?, from.f64()?, from.f64()?, from.f64()?];
-        Ok(drift::At { time_ns, lat_rad, lon_rad, speed_mps, track_rad, sigma_m })
-    };
+    let led = |from: &mut Reader<'_>| Ok(Led { at: read_at(from)?, track_rad: from.f64()?, sigma_m: from.f64()? });
     let window = from.option(|from| {
         Ok(drift::Window {
-            begin: at(from)?,
-            last: at(from)?,
+            begin: led(from)?,
+            last: led(from)?,
             since_ns: from.i64()?,
             repeated_ns: from.i64()?,
             way_m: from.f64()?,

@@ -13,7 +13,7 @@ use crate::special::float::hypot;
 /// Provenance: ours \[m/s\].
 const FAST_MPS: f64 = 80.0;
 /// What is slower may stand: noise is a way of its own. Provenance: ours \[m/s\].
-const MOVING_MPS: f64 = 5.0;
+pub(super) const MOVING_MPS: f64 = 5.0;
 /// Share of a way that lies between its ends where it is straight: elsewhere legs would cut the turns. Provenance: ours \[1\].
 const STRAIGHT: f64 = 0.98;
 /// What the way of the positions of a track may lack in all. Provenance: ours \[m\].
@@ -22,9 +22,9 @@ const LACK_M: f64 = 5000.0;
 /// ours \[1\].
 const LACK_SHARE: f64 = 0.02;
 /// Shortest window \[ns\].
-const WINDOW_NS: i64 = 60_000_000_000;
+pub(super) const WINDOW_NS: i64 = 60_000_000_000;
 /// Between two statements, and two places, up to this far apart the speed changes evenly and the way is straight \[ns\]. Provenance: ours.
-const EVEN_NS: i64 = 10_000_000_000;
+pub(super) const EVEN_NS: i64 = 10_000_000_000;
 /// Legs of the way that positions travel: the noise of each step would add up to a way of its own \[ns\]. Provenance: ours.
 const LEG_NS: i64 = 10_000_000_000;
 /// What an aircraft changes its speed by at the most between two statements that are further apart \[m/s2\]. Provenance: ours.

@@ -7,6 +7,7 @@
 //! Recorded tables add up their own minutes, between statements that are further apart as well ([`Sums`]); [`Drift`] makes the minutes of a
 //! track whose reports arrive.
 
+use super::balance::{At, EVEN_NS, MOVING_MPS, WINDOW_NS};
 use super::neighbours::east_north_m;
 use super::way::TURNING_MPS2;
 use crate::special::float::{atan2, cos, hypot, sin, sqrt};
@@ -29,12 +30,6 @@ const ON_GRID_DEG: f64 = 0.06;
 pub const STRAIGHT: f64 = 0.99;
 /// Noise of two positions, in standard deviations. Provenance: ours \[1\].
 pub const DEVIATIONS: f64 = 6.0;
-/// What is slower may stand: noise has any direction. Provenance: ours \[m/s\].
-const MOVING_MPS: f64 = 5.0;
-/// Shortest minute \[ns\].
-const WINDOW_NS: i64 = 60_000_000_000;
-/// Between two statements that are further apart speed and track may have been any \[ns\]. Provenance: ours.
-const EVEN_NS: i64 = 10_000_000_000;
 /// A source that repeats a speed and a track for this long may have no others \[ns\]. Provenance: ours.
 const REPEATED_NS: i64 = 10_000_000_000;
 /// So many minutes are not compared for that where positions leave a way that they were on: a recording of Paris has three. Provenance: ours.
@@ -155,27 +150,21 @@ impl Sums {
     }
 }
 
-/// A place of a track that is believed.
+/// A place of a track that is believed, and where the source says that it leads.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct At {
-    /// When, in nanoseconds of any origin.
-    pub time_ns: i64,
-    /// Latitude \[rad\].
-    pub lat_rad: f64,
-    /// Longitude \[rad\].
-    pub lon_rad: f64,
-    /// Reported speed over the ground, NaN where none is \[m/s\].
-    pub speed_mps: f64,
+pub struct Led {
+    /// The place and the speed.
+    pub at: At,
     /// Reported track over the ground from true north, NaN where none is \[rad\].
     pub track_rad: f64,
     /// Root of both horizontal variances, 0 where none is stated \[m\].
     pub sigma_m: f64,
 }
 
-impl At {
+impl Led {
     /// The way to another, the same back, in the directions of the middle.
     fn way_to(&self, other: &Self) -> [f64; 2] {
-        let ends = [[self.lat_rad, self.lon_rad], [other.lat_rad, other.lon_rad]];
+        let ends = [[self.at.lat_rad, self.at.lon_rad], [other.at.lat_rad, other.at.lon_rad]];
         let ([east, north], [west, south]) = (east_north_m(ends[0], ends[1]), east_north_m(ends[1], ends[0]));
         [0.5 * (east - west), 0.5 * (north - south)]
     }
@@ -185,9 +174,9 @@ impl At {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
     /// Where it began.
-    pub begin: At,
+    pub begin: Led,
     /// The last report.
-    pub last: At,
+    pub last: Led,
     /// Since when speed and track are what they are \[ns\].
     pub since_ns: i64,
     /// The longest time for which they were repeated \[ns\].
@@ -201,31 +190,31 @@ pub struct Window {
 }
 
 impl Window {
-    const fn begin(at: At) -> Self {
-        Self { begin: at, last: at, since_ns: at.time_ns, repeated_ns: 0, way_m: 0.0, lead_m: [0.0; 2], moved_m: [0.0; 2] }
+    const fn begin(led: Led) -> Self {
+        Self { begin: led, last: led, since_ns: led.at.time_ns, repeated_ns: 0, way_m: 0.0, lead_m: [0.0; 2], moved_m: [0.0; 2] }
     }
 
     /// A step of a steady turn is a chord in the mean direction of its ends.
-    fn step(&mut self, at: At) {
-        let elapsed_s = at.time_ns.saturating_sub(self.last.time_ns) as f64 * 1e-9;
-        let even_m = 0.5 * (self.last.speed_mps + at.speed_mps) * elapsed_s;
-        let half_rad = 0.5 * turn_rad(self.last.track_rad, at.track_rad);
+    fn step(&mut self, led: Led) {
+        let elapsed_s = led.at.time_ns.saturating_sub(self.last.at.time_ns) as f64 * 1e-9;
+        let even_m = 0.5 * (self.last.at.speed_mps + led.at.speed_mps) * elapsed_s;
+        let half_rad = 0.5 * turn_rad(self.last.track_rad, led.track_rad);
         let chord_m = even_m * if half_rad.abs() > 1e-6 { sin(half_rad) / half_rad } else { 1.0 };
         let towards = self.last.track_rad + half_rad;
         self.lead_m = [self.lead_m[0] + chord_m * sin(towards), self.lead_m[1] + chord_m * cos(towards)];
-        let [east, north] = self.last.way_to(&at);
+        let [east, north] = self.last.way_to(&led);
         self.moved_m = [self.moved_m[0] + east, self.moved_m[1] + north];
         self.way_m += even_m;
-        if at.speed_mps != self.last.speed_mps || at.track_rad != self.last.track_rad {
-            self.since_ns = at.time_ns;
+        if led.at.speed_mps != self.last.at.speed_mps || led.track_rad != self.last.track_rad {
+            self.since_ns = led.at.time_ns;
         }
-        self.repeated_ns = self.repeated_ns.max(at.time_ns.saturating_sub(self.since_ns));
-        self.last = at;
+        self.repeated_ns = self.repeated_ns.max(led.at.time_ns.saturating_sub(self.since_ns));
+        self.last = led;
     }
 
     /// What it is, where it is one to judge.
     fn minute(&self) -> Option<Minute> {
-        let (way_m, length_s) = (self.way_m, self.last.time_ns.saturating_sub(self.begin.time_ns) as f64 * 1e-9);
+        let (way_m, length_s) = (self.way_m, self.last.at.time_ns.saturating_sub(self.begin.at.time_ns) as f64 * 1e-9);
         let [[lead_east, lead_north], [east, north]] = [self.lead_m, self.moved_m];
         let (lead_m, moved_m) = (hypot(lead_east, lead_north), hypot(east, north));
         let noise_m = DEVIATIONS * hypot(self.begin.sigma_m, self.last.sigma_m);
@@ -278,27 +267,27 @@ pub struct Drift {
 
 impl Drift {
     /// The next place, in the order of time. One without a speed and a track is passed over.
-    pub fn see(&mut self, at: At) {
-        self.sums.course(at.track_rad);
-        if !(at.speed_mps.is_finite() && at.track_rad.is_finite()) {
+    pub fn see(&mut self, led: Led) {
+        self.sums.course(led.track_rad);
+        if !(led.at.speed_mps.is_finite() && led.track_rad.is_finite()) {
             return;
         }
         let Some(window) = self.window.as_mut() else {
-            self.window = Some(Window::begin(at));
+            self.window = Some(Window::begin(led));
             return;
         };
-        let elapsed_ns = at.time_ns.saturating_sub(window.last.time_ns);
+        let elapsed_ns = led.at.time_ns.saturating_sub(window.last.at.time_ns);
         if elapsed_ns <= 0 {
             return;
         }
         // An aircraft may turn by half a turn meanwhile, at 60 degrees of bank.
-        let known_s = PI * 0.5 * (window.last.speed_mps + at.speed_mps) / TURNING_MPS2;
+        let known_s = PI * 0.5 * (window.last.at.speed_mps + led.at.speed_mps) / TURNING_MPS2;
         if elapsed_ns > EVEN_NS || !(elapsed_ns as f64 * 1e-9 <= known_s) {
-            self.window = Some(Window::begin(at));
+            self.window = Some(Window::begin(led));
             return;
         }
-        window.step(at);
-        if at.time_ns.saturating_sub(window.begin.time_ns) >= WINDOW_NS {
+        window.step(led);
+        if led.at.time_ns.saturating_sub(window.begin.at.time_ns) >= WINDOW_NS {
             let (minute, repeated) = (window.minute(), window.repeated_ns >= REPEATED_NS);
             if !repeated {
                 self.repeats = 0;
@@ -306,7 +295,7 @@ impl Drift {
             if let Some(minute) = minute {
                 self.judge(&minute, repeated);
             }
-            self.window = Some(Window::begin(at));
+            self.window = Some(Window::begin(led));
         }
     }
 

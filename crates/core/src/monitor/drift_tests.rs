@@ -46,7 +46,11 @@ impl Flight<'_> {
             let (lat_rad, lon_rad) = (lat_rad + away_m[1] / RADIUS_M, lon_rad + away_m[0] / RADIUS_M / lat_rad.cos());
             if k % self.every_s == 0 && (self.row)(k) {
                 let (speed_mps, track_rad) = (self.speed_mps, (self.reported)(track_rad, k));
-                drift.see(At { time_ns: i64::from(k) * 1_000_000_000, lat_rad, lon_rad, speed_mps, track_rad, sigma_m: self.sigma_m });
+                drift.see(Led {
+                    at: At { time_ns: i64::from(k) * 1_000_000_000, lat_rad, lon_rad, speed_mps },
+                    track_rad,
+                    sigma_m: self.sigma_m,
+                });
                 if let Some(drifted) = drift.drifted() {
                     return Some((drifted, k));
                 }
@@ -252,7 +256,7 @@ fn directions_at_high_latitudes_and_over_the_date_line_are_right() {
         for k in 0..600_i64 {
             let track_rad = 0.25 * PI;
             let east = if lon_rad > PI { lon_rad - 2.0 * PI } else { lon_rad };
-            drift.see(At { time_ns: k * 1_000_000_000, lat_rad, lon_rad: east, speed_mps: 240.0, track_rad, sigma_m: 0.0 });
+            drift.see(Led { at: At { time_ns: k * 1_000_000_000, lat_rad, lon_rad: east, speed_mps: 240.0 }, track_rad, sigma_m: 0.0 });
             let part = 240.0 / RADIUS_M * 0.5_f64.sqrt();
             (lat_rad, lon_rad) = (lat_rad + part, lon_rad + part / (lat_rad + 0.5 * part).cos());
         }
