@@ -48,12 +48,14 @@ pub type PlaceWords = ([Vec<String>; 11], [f64; 2]);
 
 /// Whole numbers up to it under a name that counts are no coordinates (ours) \[1\].
 const MOST_COUNTED: f64 = 1e5;
+/// Names beyond it are no pair's \[1\].
+const LONGEST_OF_A_PAIR: usize = 200;
 /// Nearer to zero a letter of a hemisphere contradicts nothing (ours) \[rad\].
 const NO_SIDE_RAD: f64 = 1e-4;
 
 impl Places {
-    /// Whether a value with both coordinates is a place of the vehicle that its position contradicts, in whichever order they are.
-    fn pair_contradicts(&self, key: &str, value: &Value, (lat_rad, lon_rad): LatLon) -> bool {
+    /// Whether a value with both coordinates contradicts the position, in whichever order they are; `None` where it is no place of the vehicle.
+    fn pair_contradicts(&self, key: &str, value: &Value, (lat_rad, lon_rad): LatLon) -> Option<bool> {
         let parts = parts(key);
         let any = |words: &BTreeSet<String>| parts.iter().any(|part| words.contains(part.trim_end_matches(|c: char| c.is_ascii_digit())));
         let written = match value {
@@ -62,33 +64,36 @@ impl Places {
             Value::Array(all) => numbers(all).map(|deg| Written { deg, ordered: false, by_itself: false }),
             _ => None,
         };
-        let named = any(&self.pair) || (any(&self.latitude) && any(&self.longitude)) || plain(key).contains("geohash");
-        let Some(written) = written.filter(|written| (written.by_itself || named) && written.deg != [0.0; 2] && !any(&self.of_others))
-        else {
-            return false;
-        };
+        let named = self.is_pair(&parts) || plain(key).contains("geohash");
+        let written = written.filter(|written| (written.by_itself || named) && written.deg != [0.0; 2] && !any(&self.of_others))?;
         let apart_m = written.places_rad().map(|there| {
             let [east, north] = east_north_m([lat_rad, lon_rad], there);
             libm::hypot(east, north)
         });
         let [of_any, of_inertial] = self.apart_m;
-        apart_m.reduce(f64::min).is_some_and(|apart_m| apart_m > if any(&self.inertial) { of_inertial } else { of_any })
+        apart_m.reduce(f64::min).map(|apart_m| apart_m > if any(&self.inertial) { of_inertial } else { of_any })
     }
 
-    /// Whether a number under a name is a coordinate of the vehicle that its position contradicts.
-    fn contradict(&self, key: &str, value: &Value, (lat_rad, lon_rad): LatLon) -> bool {
+    /// Whether the parts of a name are those of both coordinates.
+    fn is_pair(&self, parts: &[String]) -> bool {
+        let any = |words: &BTreeSet<String>| parts.iter().any(|part| words.contains(part.trim_end_matches(|c: char| c.is_ascii_digit())));
+        any(&self.pair) || (any(&self.latitude) && any(&self.longitude))
+    }
+
+    /// Whether a number contradicts the position; `None` where by its name it is no coordinate of the vehicle.
+    fn contradict(&self, key: &str, value: &Value, (lat_rad, lon_rad): LatLon) -> Option<bool> {
         let parts = parts(key);
         let any = |words: &BTreeSet<String>| parts.iter().any(|part| words.contains(part.trim_end_matches(|c: char| c.is_ascii_digit())));
         let is_latitude = any(&self.latitude);
         // A number that is named of both coordinates is neither of them.
         if is_latitude == any(&self.longitude) {
-            return false;
+            return None;
         }
-        let number = value.as_f64().or_else(|| value.as_str().and_then(angle));
+        let number = number(value);
         // Who has no position writes zeros.
-        let Some(number) = number.filter(|number| *number != 0.0 && !any(&self.of_others)) else { return false };
+        let number = number.filter(|number| *number != 0.0 && !any(&self.of_others))?;
         if any(&self.counts) && number.fract() == 0.0 && number.abs() <= MOST_COUNTED {
-            return false;
+            return None;
         }
         let unit = |name: &str| parts.iter().any(|part| part == name);
         let other_rad = if unit("rad") { number } else { (number * if unit("e7") || unit("1e7") { 1e-7 } else { 1.0 }).to_radians() };
@@ -96,12 +101,13 @@ impl Places {
         let [east, north] = east_north_m([lat_rad, lon_rad], there);
         let apart_m = east.abs().max(north.abs());
         let [of_any, of_inertial] = self.apart_m;
-        apart_m > if any(&self.inertial) { of_inertial } else { of_any }
+        Some(apart_m > if any(&self.inertial) { of_inertial } else { of_any })
     }
 
-    /// Whether a text is a hemisphere on the other side of the position, under a name of a coordinate or of a hemisphere.
-    fn hemisphere_contradicts(&self, key: &str, value: &Value, (lat_rad, lon_rad): LatLon) -> bool {
-        let Value::String(text) = value else { return false };
+    /// Whether a text is a hemisphere on the other side of the position; `None` where it is none, or has no name of a coordinate or of a
+    /// hemisphere.
+    fn hemisphere_contradicts(&self, key: &str, value: &Value, (lat_rad, lon_rad): LatLon) -> Option<bool> {
+        let Value::String(text) = value else { return None };
         let word: String = text.chars().filter(|c| c.is_alphabetic()).flat_map(char::to_uppercase).collect();
         let parts = parts(key);
         let any = |words: &BTreeSet<String>| parts.iter().any(|part| words.contains(part.trim_end_matches(|c: char| c.is_ascii_digit())));
@@ -111,16 +117,21 @@ impl Places {
             _ => [-1.0, 1.0].into_iter().zip(&self.sides[axis]).find_map(|(sign, words)| words.contains(&word).then_some(sign)),
         };
         let axes = [(lat_rad, any(&self.latitude)), (lon_rad, any(&self.longitude))].into_iter().enumerate();
-        !any(&self.of_others)
-            && axes.into_iter().any(|(axis, (angle_rad, named))| {
-                (named || of_any) && angle_rad.abs() > NO_SIDE_RAD && letters(axis).is_some_and(|sign| sign * angle_rad < 0.0)
-            })
+        let stated = axes
+            .filter(|(_, (_, named))| (*named || of_any) && !any(&self.of_others))
+            .filter_map(|(axis, (angle_rad, _))| letters(axis).map(|sign| angle_rad.abs() > NO_SIDE_RAD && sign * angle_rad < 0.0));
+        stated.reduce(|one, other| one || other)
     }
+}
+
+/// A number, or a text of one with the letter of its hemisphere at most.
+fn number(value: &Value) -> Option<f64> {
+    value.as_f64().or_else(|| value.as_str().and_then(angle))
 }
 
 /// The two numbers of a list that may be a place, with a height at most.
 fn numbers(all: &[Value]) -> Option<[f64; 2]> {
-    let numbers: Option<Vec<f64>> = all.iter().map(Value::as_f64).collect();
+    let numbers: Option<Vec<f64>> = all.iter().map(number).collect();
     match *numbers? {
         [first, second] | [first, second, _] => Some([first, second]),
         _ => None,
@@ -216,16 +227,27 @@ impl Statements {
         }
     }
 
-    /// Whether a value is a coordinate of another place of the vehicle, or an object that holds one.
-    fn elsewhere(&self, key: &str, value: &Value, at: LatLon) -> bool {
+    /// Whether another place of the vehicle, or an object or a list that holds one, contradicts the position; `None` where there is none.
+    fn elsewhere(&self, key: &str, value: &Value, at: LatLon) -> Option<bool> {
+        let any = |compared: &mut dyn Iterator<Item = bool>| compared.reduce(|one, other| one || other);
         match value {
-            Value::Object(inner) => inner.iter().any(|(name, each)| self.elsewhere(&format!("{key}_{name}"), each, at)),
-            Value::String(text) if written(text).is_some() => written(text).is_some_and(|value| self.elsewhere(key, &value, at)),
-            _ => {
-                self.places.contradict(key, value, at)
-                    || self.places.pair_contradicts(key, value, at)
-                    || self.places.hemisphere_contradicts(key, value, at)
+            Value::Object(inner) => {
+                let each = inner.iter().filter_map(|(name, each)| self.elsewhere(&format!("{key}_{name}"), each, at));
+                let halves = halves(inner.iter().map(|(name, each)| (&**name, each)));
+                let pairs = halves.iter().filter_map(|(stem, pair)| self.places.pair_contradicts(&format!("{key}_{stem}"), pair, at));
+                any(&mut each.chain(pairs))
             }
+            Value::Array(all) if all.iter().any(|each| each.is_object() || each.is_array()) => {
+                any(&mut all.iter().filter_map(|each| self.elsewhere(key, each, at)))
+            }
+            Value::String(text) if written(text).is_some() => written(text).and_then(|value| self.elsewhere(key, &value, at)),
+            _ => any(&mut [
+                self.places.contradict(key, value, at),
+                self.places.pair_contradicts(key, value, at),
+                self.places.hemisphere_contradicts(key, value, at),
+            ]
+            .into_iter()
+            .flatten()),
         }
     }
 
@@ -233,6 +255,23 @@ impl Statements {
     pub(super) fn stopped(&self, mode: &str) -> bool {
         self.modes.contains(&spelled(mode))
     }
+}
+
+/// What a name is without its last digit, where it ends with one: `gps_lat_lon_0` and `gps_lat_lon_1` are one pair.
+fn stem(name: &str) -> Option<&str> {
+    let bare = |text: &str| text.trim_end_matches(|c: char| !c.is_ascii_alphanumeric()).len();
+    let of = |length: usize| name.get(..length);
+    let digitless = of(bare(name)).filter(|_| name.len() <= LONGEST_OF_A_PAIR)?.strip_suffix(|c: char| c.is_ascii_digit())?;
+    of(bare(digitless)).filter(|stem| !stem.is_empty())
+}
+
+/// Pairs of numbers under names of one stem, by it.
+fn halves<'a>(all: impl Iterator<Item = (&'a str, &'a Value)>) -> BTreeMap<&'a str, Value> {
+    let mut by_stem: BTreeMap<&str, Vec<Value>> = BTreeMap::new();
+    for (stem, value) in all.filter_map(|(name, value)| Some((stem(name)?, value))).filter(|(_, value)| number(value).is_some()) {
+        by_stem.entry(stem).or_default().push(value.clone());
+    }
+    by_stem.into_iter().filter(|(_, pair)| pair.len() == 2).map(|(stem, pair)| (stem, Value::Array(pair))).collect()
 }
 
 /// Whether a name is the `type` of something with coordinates, which is a shape.
@@ -325,17 +364,28 @@ impl<'de> Visitor<'de> for Others<'_> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<bool, A::Error> {
-        let mut against = false;
+        let (mut against, mut numbered) = (false, Vec::new());
         while let Some(Key(key)) = map.next_key()? {
             if self.known.contains(&&*key) {
                 map.next_value::<IgnoredAny>()?;
                 continue;
             }
             let value: Value = map.next_value()?;
-            against |= self.at.is_some_and(|at| self.statements.elsewhere(&key, &value, at));
-            match self.statements.speaks_against(&key, &value) {
-                Some(so) => against |= so,
-                None => self.passed_over.count(&key),
+            let elsewhere = self.at.and_then(|at| self.statements.elsewhere(&key, &value, at));
+            // A letter of a hemisphere is compared, and is no number of satellites.
+            let hemisphere = elsewhere.is_some() && value.as_str().is_some_and(|text| number(&Value::from(text)).is_none());
+            match (elsewhere, self.statements.speaks_against(&key, &value).filter(|_| !hemisphere)) {
+                (None, None) if stem(&key).is_some() => numbered.push((key.into_owned(), value)),
+                (None, None) => self.passed_over.count(&key),
+                (elsewhere, spoken) => against |= elsewhere.unwrap_or(false) || spoken.unwrap_or(false),
+            }
+        }
+        let pairs = halves(numbered.iter().map(|(key, value): &(String, Value)| (&**key, value)));
+        let compared = |stem: &str| self.at.and_then(|at| self.statements.places.pair_contradicts(stem, pairs.get(stem)?, at));
+        for (key, _) in &numbered {
+            match stem(key).and_then(compared) {
+                Some(contradicts) => against |= contradicts,
+                None => self.passed_over.count(key),
             }
         }
         Ok(against)

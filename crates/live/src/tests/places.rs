@@ -172,6 +172,12 @@ fn a_line_with_another_place_of_the_vehicle_is_not_believed() {
         "\"gps_lat\":\"48.05N\"".to_owned(),
         format!("\"gps_lat_e7\":{:.0}", (lat_deg + 0.1) * 1e7),
         format!("\"irs_lat\":{}", lat_deg + 0.3),
+        "\"gps_lat_lon_0\":10.0,\"gps_lat_lon_1\":5.7".to_owned(),
+        "\"fix\":{\"lat_lon[0]\":10.0,\"lat_lon[1]\":5.7}".to_owned(),
+        "\"sensors\":[{\"lat\":10,\"lon\":10}]".to_owned(),
+        "\"receivers\":[[{\"lat\":10,\"lon\":10}]]".to_owned(),
+        "\"position\":[\"10.0\",\"5.7\"]".to_owned(),
+        "\"ns\":\"S\"".to_owned(),
     ] {
         assert_eq!(of(&far), Some(Status::InvalidInput), "{far}");
     }
@@ -183,6 +189,9 @@ fn a_line_with_another_place_of_the_vehicle_is_not_believed() {
         "\"dest_lat\":10.0,\"airport_lon\":10.0".to_owned(),
         format!("\"irs_lat\":{}", lat_deg + 0.1),
         "\"latency_s\":0.2,\"flat\":5".to_owned(),
+        format!("\"gps_lat_lon_0\":{lat_deg},\"gps_lat_lon_1\":{}", 0.1_f64.to_degrees()),
+        format!("\"sensors\":[{{\"lat\":{lat_deg}}},{{\"temperature_0\":10,\"temperature_1\":5.7}}]"),
+        "\"ns\":\"N\",\"ew\":\"E\",\"lat_dir\":\"N\"".to_owned(),
     ] {
         assert_eq!(of(&near), Some(Status::Ok), "{near}");
     }
