@@ -15,8 +15,11 @@ from navbound.errors import FormatError
 from test_live_receivers import lived
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import polars as pl
 
+    from conftest import Ended
     from navbound.run.directory import Run
 
 RNP_M, N = 0.3 * 1852.0, 60
@@ -143,3 +146,12 @@ def test_a_speed_that_vtg_estimates_speaks_of_positions_that_stand(tmp_path: Pat
         return "".join(map(sentence, bodies))
 
     assert analyzed("".join(standing(k) for k in range(120)), tmp_path).summary.verdict.id == "not_shown"
+
+
+def test_the_terminal_says_what_was_stated_against_a_position(tmp_path: Path, navbound: Callable[..., Ended]) -> None:
+    text = "".join(second(k) + sentence(f"GPGSA,A,{2 if k >= N - 3 else 3},01,02,03,04,,,,,,,,,2.0,1.0,1.7") for k in range(N))
+    (tmp_path / "log.nmea").write_text(text)
+    ended = navbound("analyze", tmp_path / "log.nmea", "--spec", "RNP 0.3", "--out", tmp_path / "run")
+    (words,) = (line.strip() for line in ended.stdout.splitlines() if "speaks against" in line)
+    # Four sentences a second.
+    assert words == f"3 x position that another statement of its epoch speaks against (log.nmea, first: record {4 * (N - 3) + 2}: GSA fix 2)"

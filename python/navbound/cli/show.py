@@ -93,7 +93,8 @@ def _print(run: Run) -> None:
     if rejected:
         out_console.print(f"{counted(rejected, 'row or record was', 'rows or records were')} not used:", markup=False)
         for r in summary.rejected:
-            where = "" if r.first_line is None else f", first in line {r.first_line}: {r.example}"
+            line = "" if r.first_line is None else f" in line {r.first_line}"
+            where = f", first{line}: {r.example}" if line or r.example else ""
             out_console.print(f"  {r.count} x {r.reason} ({Path(r.file).name}{where})", markup=False, highlight=False)
     if summary.tracks:
         cautions, warnings = (sum(getattr(t, n) for t in summary.tracks) for n in ("n_cautions", "n_warnings"))

@@ -41,7 +41,6 @@ from navbound.run.pieces import (
 from navbound.table.arguments import checked
 from navbound.table.columns import HEARD
 from navbound.table.declare import schema
-from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -359,10 +358,8 @@ def _together(readings: Sequence[Reading], rejected: list[Rejection]) -> tuple[p
     separated = separate(epochs)
     reason = "time repeated within a track of several files"
     for words, repeated in separated.kinds.items():
-        example = counted(repeated.height, "epoch")
-        rejected.append(
-            Rejection(file=readings[-1].source.path, reason=f"{reason}{words}", count=repeated.height, first_line=None, example=example)
-        )
+        path = readings[-1].source.path
+        rejected.append(Rejection(file=path, reason=f"{reason}{words}", count=repeated.height, first_line=None, example=""))
     return separated.epochs, pl.concat([*(r.left_out for r in readings), left_out(separated.unjudged)])
 
 

@@ -112,9 +112,7 @@ def _refuse_beyond(route: Route, n_followed: int, n_beyond: int, rejected: list[
         )
     if n_beyond:
         reason = "before the start or beyond the end of the route"
-        rejected.append(
-            Rejection(file=route.source.path, reason=reason, count=n_beyond, first_line=None, example=counted(n_beyond, "epoch"))
-        )
+        rejected.append(Rejection(file=route.source.path, reason=reason, count=n_beyond, first_line=None, example=""))
 
 
 def _route_path(epochs: Table, route: Route, cross_track: CrossTrack) -> OnPath:

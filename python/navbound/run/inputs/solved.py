@@ -125,11 +125,11 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
         raise FormatError(source.path, f"no position could be solved; {'; '.join(why)}")
     path = str(source.path)
     rejected = [
-        Rejection(file=path, reason=f"no position: {REASONS[id_].words}", count=count, first_line=None, example=counted(count, "epoch"))
+        Rejection(file=path, reason=f"no position: {REASONS[id_].words}", count=count, first_line=None, example="")
         for id_, count in without.group_by("reason_id").len().sort("reason_id").iter_rows()
     ]
     rejected += [
-        Rejection(file=path, reason=f"time repeated{words}", count=rows.height, first_line=None, example=counted(rows.height, "epoch"))
+        Rejection(file=path, reason=f"time repeated{words}", count=rows.height, first_line=None, example="")
         for words, rows in repeats.kinds.items()
     ]
     rejected += of_observations(observations)
