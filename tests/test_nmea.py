@@ -154,4 +154,6 @@ def test_the_terminal_says_what_was_stated_against_a_position(tmp_path: Path, na
     ended = navbound("analyze", tmp_path / "log.nmea", "--spec", "RNP 0.3", "--out", tmp_path / "run")
     (words,) = (line.strip() for line in ended.stdout.splitlines() if "speaks against" in line)
     # Four sentences a second.
-    assert words == f"3 x position that another statement of its epoch speaks against (log.nmea, first: record {4 * (N - 3) + 2}: GSA fix 2)"
+    assert (
+        words == f"3 x position that another statement of its epoch speaks against (log.nmea, first: record {4 * (N - 3) + 2}: GSA fix 2)"
+    )

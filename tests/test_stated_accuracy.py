@@ -143,8 +143,19 @@ def test_a_name_that_may_be_an_error_is_named_and_not_compared(tmp_path: Path, n
 
 def test_a_text_among_the_numbers_that_are_compared_is_counted(tmp_path: Path) -> None:
     texts = ["1.5"] * N
-    texts[7], texts[8], texts[9], texts[10] = "12 km", "bad", "", "nan"
+    texts[7], texts[8], texts[9], texts[10], texts[11] = "wide", "bad", "", "nan", "5 m"
     summary = navbound.analyze(table(tmp_path / "a.csv", N, sigma_m=SIGMA_M, added={"hAcc": texts})).summary
     assert summary.verdict.id == "inside"
     (counted,) = [each for each in summary.rejected if "hAcc" in each.reason]
-    assert (counted.reason, counted.count, counted.example) == ("hAcc: not a number; not compared", 2, "12 km")
+    assert (counted.reason, counted.count, counted.example) == ("hAcc: not a number; not compared", 2, "wide")
+
+
+@pytest.mark.parametrize("name", ["accuracy", "h_acc", "cep", "drms", "hAcc", "h_err"])
+@pytest.mark.parametrize("written", ["2500 m", "2500.0 M", "2.5 km", "8202 ft", "±2500 m", ">= 10 NM", "> 5000"])
+def test_an_accuracy_with_its_unit_in_the_field_is_compared(tmp_path: Path, name: str, written: str) -> None:
+    for n_far in (N, 5):
+        texts = ["5 m"] * (N - n_far) + [written] * n_far
+        verdict = navbound.analyze(table(tmp_path / "a.csv", N, sigma_m=SIGMA_M, added={name: texts})).summary.verdict
+        assert (verdict.id, verdict.n_stated_worse) == ("not_shown", n_far)
+    near = navbound.analyze(table(tmp_path / "b.csv", N, sigma_m=SIGMA_M, added={name: ["5 m", "0.005 km"] * (N // 2)}))
+    assert (near.summary.verdict.id, near.summary.rejected) == ("inside", [])

@@ -146,6 +146,28 @@ fn of_hemispheres(text: &str) -> Option<Written> {
     Some(Written { deg, ordered: true, by_itself: true })
 }
 
+/// One coordinate, whether it has the letter of a latitude or a longitude, where it has a letter: `48.857° N`, `N48 51.4`, `48°51'24"`; a bare
+/// number is one too \[deg\].
+#[must_use]
+pub fn of_coordinate(text: &str) -> Option<f64> {
+    let text = text.trim();
+    if let Some(plain) = number(text) {
+        return Some(plain);
+    }
+    let (body, sign) = text.strip_prefix('-').map_or((text, 1.0), |body| (body, -1.0));
+    let tokens = if text.len() <= LONGEST { tokens(body)? } else { return None };
+    let letter = |at: Option<&Token>| matches!(at, Some(Token::Letter(_)));
+    let deg = match (letter(tokens.first()), letter(tokens.last())) {
+        (leads, trails) if leads != trails => of_half(&tokens, leads)?.1,
+        (false, false) if body.contains(['°', 'º']) => {
+            let northern: Vec<Token> = tokens.into_iter().chain([Token::Letter('N')]).collect();
+            of_half(&northern, false)?.1
+        }
+        _ => return None,
+    };
+    Some(sign * deg)
+}
+
 fn tokens(text: &str) -> Option<Vec<Token>> {
     let (mut tokens, mut rest) = (Vec::new(), text);
     while let Some(c) = rest.chars().next() {
@@ -231,6 +253,27 @@ mod tests {
             assert!(near(text, paris) && !of_text(text).unwrap().by_itself, "{text}");
         }
         assert!(near("+48.85667-002.295/", [48.856_67, -2.295]) && near("33 51.4 S 151 12.0 E", [-33.856_67, 151.2]));
+    }
+
+    #[test]
+    fn one_coordinate_is_read_in_every_form() {
+        for (text, deg) in [
+            ("48.85667", 48.856_67),
+            (" -48.5 ", -48.5),
+            ("48.85667 N", 48.856_67),
+            ("48.85667° N", 48.856_67),
+            ("N48.85667", 48.856_67),
+            ("S 48 51.4", -48.856_67),
+            ("48°51'24\"", 48.856_67),
+            ("-48°51.4'", -48.856_67),
+            ("4851.400N", 48.856_67),
+            ("00217.700W", -2.295),
+        ] {
+            assert!(of_coordinate(text).is_some_and(|read| (read - deg).abs() < 1e-4), "{text}: {:?}", of_coordinate(text));
+        }
+        for text in ["", "N", "48 51", "12:30:15", "48 N 2 E", "N 48 S", "48°72'", "north", "48,5"] {
+            assert!(of_coordinate(text).is_none(), "{text}: {:?}", of_coordinate(text));
+        }
     }
 
     /// The example of the description of geohashes: 57.64911 N, 10.40744 E.

@@ -120,13 +120,15 @@ impl Places {
         let stated = axes
             .filter(|(_, (_, named))| (*named || of_any) && !any(&self.of_others))
             .filter_map(|(axis, (angle_rad, _))| letters(axis).map(|sign| angle_rad.abs() > NO_SIDE_RAD && sign * angle_rad < 0.0));
-        stated.reduce(|one, other| one || other)
+        // A number beside its letter that nobody could read was not compared.
+        let read = !text.contains(|c: char| c.is_ascii_digit());
+        stated.reduce(|one, other| one || other).filter(|against| *against || read)
     }
 }
 
-/// A number, or a text of one with the letter of its hemisphere at most.
+/// A number, or a text of a coordinate.
 fn number(value: &Value) -> Option<f64> {
-    value.as_f64().or_else(|| value.as_str().and_then(angle))
+    value.as_f64().or_else(|| value.as_str().and_then(place::of_coordinate))
 }
 
 /// The two numbers of a list that may be a place, with a height at most.
@@ -136,16 +138,6 @@ fn numbers(all: &[Value]) -> Option<[f64; 2]> {
         [first, second] | [first, second, _] => Some([first, second]),
         _ => None,
     }
-}
-
-/// A number, which may stand before the letter of its hemisphere.
-fn angle(text: &str) -> Option<f64> {
-    let text = text.trim();
-    let (digits, sign) = match text.strip_suffix(['N', 'E', 'n', 'e']) {
-        Some(digits) => (digits, 1.0),
-        None => text.strip_suffix(['S', 'W', 's', 'w']).map_or((text, 1.0), |digits| (digits, -1.0)),
-    };
-    digits.trim().parse::<f64>().ok().map(|number| sign * number)
 }
 
 /// Parts of a name, in small letters: at what is neither letter nor digit, and before a capital.

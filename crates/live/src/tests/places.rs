@@ -178,6 +178,10 @@ fn a_line_with_another_place_of_the_vehicle_is_not_believed() {
         "\"receivers\":[[{\"lat\":10,\"lon\":10}]]".to_owned(),
         "\"position\":[\"10.0\",\"5.7\"]".to_owned(),
         "\"ns\":\"S\"".to_owned(),
+        "\"gps_lat\":\"29.1° N\"".to_owned(),
+        "\"gps_lat\":\"29° 6.0' N\"".to_owned(),
+        "\"gps_lat\":\"N29.1\"".to_owned(),
+        "\"gps_lat\":\"28.64S\"".to_owned(),
     ] {
         assert_eq!(of(&far), Some(Status::InvalidInput), "{far}");
     }
@@ -191,6 +195,8 @@ fn a_line_with_another_place_of_the_vehicle_is_not_believed() {
         "\"latency_s\":0.2,\"flat\":5".to_owned(),
         format!("\"gps_lat_lon_0\":{lat_deg},\"gps_lat_lon_1\":{}", 0.1_f64.to_degrees()),
         format!("\"sensors\":[{{\"lat\":{lat_deg}}},{{\"temperature_0\":10,\"temperature_1\":5.7}}]"),
+        format!("\"gps_lat\":\"{lat_deg:.6}° N\""),
+        "\"gps_lat\":\"2838.87N\"".to_owned(),
         "\"ns\":\"N\",\"ew\":\"E\",\"lat_dir\":\"N\"".to_owned(),
     ] {
         assert_eq!(of(&near), Some(Status::Ok), "{near}");

@@ -56,6 +56,19 @@ def _with_units(text: pl.Series, units: Mapping[str, float], factor: float) -> p
     return parts["1"].cast(pl.Float64, strict=False) * of_unit / factor
 
 
+def lengths(column: pl.Series, factor: float) -> pl.Series:
+    """Sizes of lengths of which an accuracy or a level is stated, in a unit of so many metres; null for anything else.
+
+    A field may state a unit of its own and a sign that it is a bound: `2.5 km`, `±2500 m`, `>= 10 NM`.
+    """
+    raw = column.cast(pl.Float64, strict=False)
+    if column.dtype == pl.String:
+        text = column.str.strip_chars().str.replace(r"^[±<>=~≤≥≈\s]+", "")
+        plain = text.cast(pl.Float64, strict=False)
+        raw = pl.select(pl.coalesce(raw, plain, _with_units(text, UNITS["m"], factor))).to_series()
+    return raw.abs().fill_nan(None)
+
+
 def numbers(column: pl.Series, what: Column) -> tuple[pl.Series, pl.Series]:
     """Values in SI, null where there is none; and why, null where nothing is wrong."""
     q = QUANTITY[what.quantity]

@@ -26,6 +26,7 @@ from navbound.read.statements.rows import Stating
 from navbound.read.tables.cells import (
     MISSING,
     in_hemisphere,
+    lengths,
     no_field,
     numbers,
     on_ground,
@@ -54,7 +55,7 @@ def texts(frame: pl.DataFrame) -> tuple[set[str], set[str]]:
     head = frame.head(SHOWN).with_columns(pl.selectors.by_dtype(pl.Null).cast(pl.String))
     strings = [name for name, dtype in head.schema.items() if dtype == pl.String and name != LINE]
     written = {name: head[name].str.strip_chars().set(head[name].str.strip_chars().str.contains(MISSING), None) for name in strings}
-    in_words = {name for name, each in written.items() if each.count() and each.cast(pl.Float64, strict=False).count() == 0}
+    in_words = {name for name, each in written.items() if each.count() and lengths(each, 1.0).count() == 0}
     return in_words, {name for name, each in written.items() if not each.count()}
 
 
@@ -172,11 +173,11 @@ class Values:
 
     def _with_unread(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
         """The largest number of the columns that nothing reads though they speak of an accuracy, or of a level; it bounds nothing."""
-        for quantity, lengths in (("unread_accuracy_m", self._mapping.accuracies), ("unread_level_m", self._mapping.levels)):
-            known = {name: frame[name] for name in lengths if name not in self._no_lengths and not no_field(frame.schema[name])}
-            numbers_of = {name: raw.cast(pl.Float64, strict=False).abs().fill_nan(None) for name, raw in known.items()}
+        for quantity, factors in (("unread_accuracy_m", self._mapping.accuracies), ("unread_level_m", self._mapping.levels)):
+            known = {name: frame[name] for name in factors if name not in self._no_lengths and not no_field(frame.schema[name])}
+            numbers_of = {name: lengths(raw, factors[name]) for name, raw in known.items()}
             self._count_uncompared(frame, numbers_of)
-            values = [(each * lengths[name]).alias(name) for name, each in numbers_of.items()]
+            values = [(each * factors[name]).alias(name) for name, each in numbers_of.items()]
             self._units.see_accuracies(numbers_of)
             if values:
                 part = part.with_columns(pl.DataFrame(values).max_horizontal().alias(quantity))

@@ -1,6 +1,6 @@
 //! Frames of a receiver to positions, one after the other.
 
-use super::epoch::{Ends, Epoch, Message, State, of_kind};
+use super::epoch::{Ends, Epoch, Message, State, TALKERS, all_of_kind};
 use super::nmea::{Dated, Heard};
 use super::{Kind, Position, nmea, novatel, sbf, ubx};
 use crate::stream::Frame;
@@ -122,9 +122,10 @@ impl Decoder {
             }
             Step::Date { key, kind, dated, kept } => {
                 let known = self.epoch.state.key == Some(key);
-                let again = known && of_kind(&self.epoch.state.messages, kind).is_some();
-                if kept && (!again || nmea::places(kind, self.heard.gga)) {
-                    // Of several talkers that place one epoch each is heard.
+                let n_before = if known { all_of_kind(&self.epoch.state.messages, kind).count() } else { 0 };
+                let again = n_before > 0;
+                // Of several talkers each is heard; what states no epoch of its own begins none, however often it comes.
+                if kept && (n_before < TALKERS || nmea::places(kind, self.heard.gga)) {
                     let message = Message { kind, record, body: body.to_vec() };
                     let complete = if again { self.epoch.put_again(key, message) } else { self.epoch.put(key, message) };
                     self.emit(&complete, out);

@@ -21,7 +21,7 @@ pub struct Message {
 }
 
 /// Talkers that write one message for one epoch, each constellation and all together (ours) \[1\].
-const TALKERS: usize = 4;
+pub(super) const TALKERS: usize = 4;
 
 /// What an unfinished epoch consists of.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

@@ -270,16 +270,17 @@ fn contradiction(own: &Own<'_>, messages: &[Message], other_datum: Option<&str>)
         ("GNS", GNS, None, 6, 2, 13),
         ("PUBX", PUBX, None, ABSENT, 3, ABSENT),
     ];
-    // Several talkers write an RMC where no GGA stands.
+    // GNS has a letter for each constellation, of which one that is used is enough, and so has each of several GNS.
+    let measured = |mode: &str| mode.bytes().any(|letter| NMEA_MODES.contains(&letter));
+    let by_gns =
+        all_of_kind(messages, GNS).any(|gns| Sentence(&gns.body).get(6).is_some_and(|mode| measured(&String::from_utf8_lossy(mode))));
     let mut each = beside.into_iter().flat_map(|of| all_of_kind(messages, of.1).map(move |message| (of, Sentence(&message.body))));
     let stated = each.find_map(|((name, _, status, mode, at, navigational), other)| {
         let text = |at: usize| other.get(at).filter(|text| !text.is_empty()).map(String::from_utf8_lossy);
         if let Some(status) = status.and_then(text).filter(|status| status != "A") {
             return Some(format!("{name} status {status}"));
         }
-        // GNS has a letter for each constellation, of which one that is used is enough.
-        let measured = |mode: &str| mode.bytes().any(|letter| NMEA_MODES.contains(&letter));
-        if let Some(mode) = text(mode).filter(|mode| !measured(mode)) {
+        if let Some(mode) = text(mode).filter(|mode| !(measured(mode) || (name == "GNS" && by_gns))) {
             return Some(format!("{name} mode {mode}"));
         }
         if let Some(status) = text(navigational).filter(|status| UNSAFE.contains(&status.as_ref())) {

@@ -274,6 +274,26 @@ fn what_another_sentence_says_against_a_position_takes_it_away() {
     ] {
         assert_eq!(reasons(&[ZDA, GGA, &other, GST]), [], "{other}");
     }
+    // Each RMC, GLL and GNS of the epoch is heard, whose ever, in any order.
+    let again = |talker: &str| rmc("A", "A", "4918.0000").replace("GPRMC", talker);
+    for other in [again("GPRMC"), again("INRMC"), "GLGLL,4918.0000,N,00230.0000,E,120000.00,A,A".to_owned(), rmc("V", "N", "")] {
+        for order in
+            [[&rmc("A", "A", "4900.0000"), GGA, &gll("A", "A"), &other], [&rmc("A", "A", "4900.0000"), &gll("A", "A"), &other, GGA]]
+        {
+            assert_eq!(
+                reasons(&[&[ZDA], &order[..], &[GST]].concat()).first().map(|(reason, _)| *reason),
+                Some("contradicted"),
+                "{order:?}"
+            );
+        }
+    }
+    // However many there are, they are of one epoch; of GNS one system that measures is enough.
+    let many: Vec<String> = (0..9).map(|_| rmc("A", "A", "4900.0000")).collect();
+    let bodies: Vec<&str> = [ZDA].into_iter().chain(many.iter().map(String::as_str)).chain([GGA, GST]).collect();
+    assert_eq!((read_sentences(&bodies).n_rows, reasons(&bodies).len()), (1, 0));
+    let gns = |talker: &str, mode: &str| format!("{talker}GNS,120000.00,4900.0000,N,00230.0000,E,{mode},08,1.0,100.0,45.0,,");
+    assert_eq!(reasons(&[ZDA, GGA, &gns("GP", "A"), &gns("GL", "N"), GST]), []);
+    assert_eq!(reasons(&[ZDA, GGA, &gns("GP", "N"), &gns("GL", "N"), GST]), [("contradicted", "GNS mode N".to_owned())]);
     // The system without a satellite says that it has no fix.
     for systems in [[gsa("GP", 3), gsa("GL", 1)], [gsa("GL", 1), gsa("GP", 3)]] {
         assert_eq!(reasons(&[ZDA, GGA, &systems[0], &systems[1], GST]), []);
