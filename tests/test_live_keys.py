@@ -85,6 +85,8 @@ AGAINST: list[dict[str, object]] = [
     {"EW": "W"},
     {"gps": {"lonRef": "w"}},
     {"hemisphere": "SE"},
+    {"gps": '{"lat": 48.71, "integrity": "FAILED"}'},
+    {"sensors": [{"lat": 48.71, "valid": False}]},
 ]
 NOT_AGAINST: list[dict[str, object]] = [
     {"alerts": []},
@@ -109,6 +111,10 @@ NOT_AGAINST: list[dict[str, object]] = [
     {"dest_lat_dir": "S"},
     {"wind_from": "S"},
     {"lat_counter": 17},
+    {"rx": {"ns": "N"}},
+    {"waypoints": [{"lat": 10.0, "lon": 10.0}]},
+    {"flight_plan": {"legs": [{"lat": 10.0, "lon": 10.0}]}},
+    {"others": [{"id": "b", "lat": 10.0, "lon": 10.0}]},
 ]
 
 

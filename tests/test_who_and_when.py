@@ -416,7 +416,7 @@ def test_another_place_that_nothing_reads_is_named(tmp_path: Path, name: str) ->
     assert analyzed(tmp_path, rows(**column(name, 48.1))).summary.verdict.unread == [name]
 
 
-@pytest.mark.parametrize("name", ["dest_lat", "runway_lon", "home_latitude", "wpt_lat"])
+@pytest.mark.parametrize("name", ["dest_lat", "runway_lon", "home_latitude", "wpt_lat", "wp_lat", "route_lon", "vor_latitude"])
 def test_a_place_of_something_else_is_not(tmp_path: Path, name: str) -> None:
     assert analyzed(tmp_path, rows(**column(name, 48.1))).summary.verdict.unread == []
 

@@ -57,7 +57,7 @@ impl Places {
     /// Whether a value with both coordinates contradicts the position, in whichever order they are; `None` where it is no place of the vehicle.
     fn pair_contradicts(&self, key: &str, value: &Value, (lat_rad, lon_rad): LatLon) -> Option<bool> {
         let parts = parts(key);
-        let any = |words: &BTreeSet<String>| parts.iter().any(|part| words.contains(part.trim_end_matches(|c: char| c.is_ascii_digit())));
+        let any = |words| has(&parts, words);
         let written = match value {
             Value::String(text) if plain(key).contains("geohash") => place::of_geohash(text),
             Value::String(text) => place::of_text(text),
@@ -76,14 +76,13 @@ impl Places {
 
     /// Whether the parts of a name are those of both coordinates.
     fn is_pair(&self, parts: &[String]) -> bool {
-        let any = |words: &BTreeSet<String>| parts.iter().any(|part| words.contains(part.trim_end_matches(|c: char| c.is_ascii_digit())));
-        any(&self.pair) || (any(&self.latitude) && any(&self.longitude))
+        has(parts, &self.pair) || (has(parts, &self.latitude) && has(parts, &self.longitude))
     }
 
     /// Whether a number contradicts the position; `None` where by its name it is no coordinate of the vehicle.
     fn contradict(&self, key: &str, value: &Value, (lat_rad, lon_rad): LatLon) -> Option<bool> {
         let parts = parts(key);
-        let any = |words: &BTreeSet<String>| parts.iter().any(|part| words.contains(part.trim_end_matches(|c: char| c.is_ascii_digit())));
+        let any = |words| has(&parts, words);
         let is_latitude = any(&self.latitude);
         // A number that is named of both coordinates is neither of them.
         if is_latitude == any(&self.longitude) {
@@ -104,26 +103,43 @@ impl Places {
         Some(apart_m > if any(&self.inertial) { of_inertial } else { of_any })
     }
 
-    /// Whether a text is a hemisphere on the other side of the position; `None` where it is none, or has no name of a coordinate or of a
-    /// hemisphere.
-    fn hemisphere_contradicts(&self, key: &str, value: &Value, (lat_rad, lon_rad): LatLon) -> Option<bool> {
-        let Value::String(text) = value else { return None };
+    /// The signs of latitude and longitude that a text states as a hemisphere; `None` each where it states none, or has no name of that
+    /// coordinate or of a hemisphere.
+    fn signs(&self, key: &str, value: &Value) -> [Option<f64>; 2] {
+        let Value::String(text) = value else { return [None; 2] };
         let word: String = text.chars().filter(|c| c.is_alphabetic()).flat_map(char::to_uppercase).collect();
         let parts = parts(key);
-        let any = |words: &BTreeSet<String>| parts.iter().any(|part| words.contains(part.trim_end_matches(|c: char| c.is_ascii_digit())));
+        let any = |words| has(&parts, words);
         let of_any = any(&self.hemisphere) || self.hemisphere.contains(&plain(key));
         let letters = |axis: usize| match word.as_bytes() {
             [one @ (b'N' | b'S'), other @ (b'E' | b'W')] => Some(if [*one, *other][axis] == [b'S', b'W'][axis] { -1.0 } else { 1.0 }),
             _ => [-1.0, 1.0].into_iter().zip(&self.sides[axis]).find_map(|(sign, words)| words.contains(&word).then_some(sign)),
         };
-        let axes = [(lat_rad, any(&self.latitude)), (lon_rad, any(&self.longitude))].into_iter().enumerate();
-        let stated = axes
-            .filter(|(_, (_, named))| (*named || of_any) && !any(&self.of_others))
-            .filter_map(|(axis, (angle_rad, _))| letters(axis).map(|sign| angle_rad.abs() > NO_SIDE_RAD && sign * angle_rad < 0.0));
-        // A number beside its letter that nobody could read was not compared.
-        let read = !text.contains(|c: char| c.is_ascii_digit());
-        stated.reduce(|one, other| one || other).filter(|against| *against || read)
+        let stated = |axis: usize, named: bool| letters(axis).filter(|_| (named || of_any) && !any(&self.of_others));
+        [stated(0, any(&self.latitude)), stated(1, any(&self.longitude))]
     }
+
+    /// Whether a value is a letter or a word of a hemisphere and nothing else, under a name of a coordinate or of a hemisphere.
+    fn is_hemisphere(&self, key: &str, value: &Value) -> bool {
+        value.as_str().is_some_and(|text| !has_digits(text)) && self.signs(key, value) != [None; 2]
+    }
+
+    /// Whether a text is of a hemisphere on the other side of the position; `None` where it states none.
+    fn hemisphere_contradicts(&self, key: &str, value: &Value, (lat_rad, lon_rad): LatLon) -> Option<bool> {
+        let signs = self.signs(key, value).into_iter().zip([lat_rad, lon_rad]);
+        let beyond = signs.filter_map(|(sign, angle_rad)| sign.map(|sign| angle_rad.abs() > NO_SIDE_RAD && sign * angle_rad < 0.0));
+        // A number beside its letter that nobody could read was not compared.
+        beyond.reduce(|one, other| one || other).filter(|against| *against || self.is_hemisphere(key, value))
+    }
+}
+
+/// Whether a name has one of these parts, numbered or not.
+fn has(parts: &[String], words: &BTreeSet<String>) -> bool {
+    parts.iter().any(|part| words.contains(part.trim_end_matches(|c: char| c.is_ascii_digit())))
+}
+
+fn has_digits(text: &str) -> bool {
+    text.contains(|c: char| c.is_ascii_digit())
 }
 
 /// A number, or a text of a coordinate.
@@ -212,6 +228,8 @@ impl Statements {
             // What is said of a position in words that nobody knows speaks against it.
             .or_else(|| self.kind(key).map(|_| true)),
             Value::String(text) if written(text).is_some() => written(text).and_then(|value| self.speaks_against(key, &value)),
+            // A letter of a hemisphere is no number of satellites.
+            _ if self.places.is_hemisphere(key, value) => None,
             _ if self.kind(key).is_some() => self.kind(key).map(|kind| kind.against(value)),
             Value::Array(all) => any(&mut all.iter().filter_map(|each| self.speaks_against(key, each))),
             Value::String(text) => text.split([',', ';', '|']).any(|flag| self.kind(flag).is_some_and(Kind::is_flag)).then_some(true),
@@ -364,9 +382,7 @@ impl<'de> Visitor<'de> for Others<'_> {
             }
             let value: Value = map.next_value()?;
             let elsewhere = self.at.and_then(|at| self.statements.elsewhere(&key, &value, at));
-            // A letter of a hemisphere is compared, and is no number of satellites.
-            let hemisphere = elsewhere.is_some() && value.as_str().is_some_and(|text| number(&Value::from(text)).is_none());
-            match (elsewhere, self.statements.speaks_against(&key, &value).filter(|_| !hemisphere)) {
+            match (elsewhere, self.statements.speaks_against(&key, &value)) {
                 (None, None) if stem(&key).is_some() => numbered.push((key.into_owned(), value)),
                 (None, None) => self.passed_over.count(&key),
                 (elsewhere, spoken) => against |= elsewhere.unwrap_or(false) || spoken.unwrap_or(false),

@@ -178,6 +178,9 @@ fn a_line_with_another_place_of_the_vehicle_is_not_believed() {
         "\"receivers\":[[{\"lat\":10,\"lon\":10}]]".to_owned(),
         "\"position\":[\"10.0\",\"5.7\"]".to_owned(),
         "\"ns\":\"S\"".to_owned(),
+        // What is said beside a place that agrees is heard all the same.
+        format!("\"gps\":\"{{\\\"lat\\\":{lat_deg},\\\"spoofed\\\":1}}\""),
+        "\"status_lat\":\"N\",\"spoofed\":\"yes\"".to_owned(),
         "\"gps_lat\":\"29.1° N\"".to_owned(),
         "\"gps_lat\":\"29° 6.0' N\"".to_owned(),
         "\"gps_lat\":\"N29.1\"".to_owned(),
@@ -197,6 +200,7 @@ fn a_line_with_another_place_of_the_vehicle_is_not_believed() {
         format!("\"sensors\":[{{\"lat\":{lat_deg}}},{{\"temperature_0\":10,\"temperature_1\":5.7}}]"),
         format!("\"gps_lat\":\"{lat_deg:.6}° N\""),
         "\"gps_lat\":\"2838.87N\"".to_owned(),
+        "\"gps\":{\"ns\":\"N\"}".to_owned(),
         "\"ns\":\"N\",\"ew\":\"E\",\"lat_dir\":\"N\"".to_owned(),
     ] {
         assert_eq!(of(&near), Some(Status::Ok), "{near}");

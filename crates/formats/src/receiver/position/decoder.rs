@@ -122,15 +122,18 @@ impl Decoder {
             }
             Step::Date { key, kind, dated, kept } => {
                 let known = self.epoch.state.key == Some(key);
-                let n_before = if known { all_of_kind(&self.epoch.state.messages, kind).count() } else { 0 };
-                let again = n_before > 0;
+                let before = || all_of_kind(&self.epoch.state.messages, kind).filter(|_| known);
+                let (n_before, places) = (before().count(), nmea::places(kind, self.heard.gga));
                 // Of several talkers each is heard; what states no epoch of its own begins none, however often it comes.
-                if kept && (n_before < TALKERS || nmea::places(kind, self.heard.gga)) {
+                let passed = !kept || (!places && before().any(|each| each.body == body));
+                if !passed && (n_before < TALKERS || places) {
                     let message = Message { kind, record, body: body.to_vec() };
-                    let complete = if again { self.epoch.put_again(key, message) } else { self.epoch.put(key, message) };
+                    let complete = if n_before > 0 { self.epoch.put_again(key, message) } else { self.epoch.put(key, message) };
                     self.emit(&complete, out);
                 } else if known {
                     self.epoch.pass(key, kind);
+                    let reason = "more different sentences of one kind than an epoch has";
+                    out.extend((!passed).then_some(Item::Malformed(Malformed { record, reason })));
                 }
                 // A date of another time ends no epoch: some receivers write it between a position and its accuracy, a moment later.
                 self.heard.dated = dated.or(self.heard.dated);

@@ -291,6 +291,11 @@ fn what_another_sentence_says_against_a_position_takes_it_away() {
     let many: Vec<String> = (0..9).map(|_| rmc("A", "A", "4900.0000")).collect();
     let bodies: Vec<&str> = [ZDA].into_iter().chain(many.iter().map(String::as_str)).chain([GGA, GST]).collect();
     assert_eq!((read_sentences(&bodies).n_rows, reasons(&bodies).len()), (1, 0));
+    // More different ones than are kept are counted: none is passed over in silence.
+    let moved: Vec<String> = (0..6).map(|k| rmc("A", "A", &format!("4900.000{k}"))).collect();
+    let bodies: Vec<&str> = [ZDA].into_iter().chain(moved.iter().map(String::as_str)).chain([GGA, GST]).collect();
+    assert_eq!(reasons(&bodies), [("damaged_message", "more different sentences of one kind than an epoch has".to_owned())]);
+    assert_eq!(read_sentences(&bodies).left_out[0].count, 2);
     let gns = |talker: &str, mode: &str| format!("{talker}GNS,120000.00,4900.0000,N,00230.0000,E,{mode},08,1.0,100.0,45.0,,");
     assert_eq!(reasons(&[ZDA, GGA, &gns("GP", "A"), &gns("GL", "N"), GST]), []);
     assert_eq!(reasons(&[ZDA, GGA, &gns("GP", "N"), &gns("GL", "N"), GST]), [("contradicted", "GNS mode N".to_owned())]);
