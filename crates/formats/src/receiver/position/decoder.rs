@@ -125,7 +125,8 @@ impl Decoder {
                 let before = || all_of_kind(&self.epoch.state.messages, kind).filter(|_| known);
                 let (n_before, places) = (before().count(), nmea::places(kind, self.heard.gga));
                 // Of several talkers each is heard; what states no epoch of its own begins none, however often it comes.
-                let passed = !kept || (!places && before().any(|each| each.body == body));
+                // Two letters are the talker.
+                let passed = !kept || (!places && before().any(|each| each.body.get(2..) == body.get(2..)));
                 if !passed && (n_before < TALKERS || places) {
                     let message = Message { kind, record, body: body.to_vec() };
                     let complete = if n_before > 0 { self.epoch.put_again(key, message) } else { self.epoch.put(key, message) };

@@ -288,7 +288,8 @@ fn what_another_sentence_says_against_a_position_takes_it_away() {
         }
     }
     // However many there are, they are of one epoch; of GNS one system that measures is enough.
-    let many: Vec<String> = (0..9).map(|_| rmc("A", "A", "4900.0000")).collect();
+    let many: Vec<String> =
+        ["GP", "GN", "GL", "GA", "GB", "II", "IN", "EC", "GP"].map(|of| rmc("A", "A", "4900.0000").replacen("GP", of, 1)).to_vec();
     let bodies: Vec<&str> = [ZDA].into_iter().chain(many.iter().map(String::as_str)).chain([GGA, GST]).collect();
     assert_eq!((read_sentences(&bodies).n_rows, reasons(&bodies).len()), (1, 0));
     // More different ones than are kept are counted: none is passed over in silence.
