@@ -86,6 +86,9 @@ AGAINST: list[dict[str, object]] = [
     {"gps": {"lonRef": "w"}},
     {"hemisphere": "SE"},
     {"gps": '{"lat": 48.71, "integrity": "FAILED"}'},
+    {"payload": '[{"lat": 48.71, "valid": false}]'},
+    {"gps": {"lat": 48.71, "lon": 1.72, "word": "unheard of"}},
+    {"gps": {"lat": 48.0, "lon": 12.5}},
     {"sensors": [{"lat": 48.71, "valid": False}]},
 ]
 NOT_AGAINST: list[dict[str, object]] = [
@@ -112,6 +115,8 @@ NOT_AGAINST: list[dict[str, object]] = [
     {"wind_from": "S"},
     {"lat_counter": 17},
     {"rx": {"ns": "N"}},
+    {"gps": {"lat": 48.71, "lon": 1.72, "alt": 100.0}},
+    {"fix": {"latitude": 48.71, "longitude": 1.72}},
     {"waypoints": [{"lat": 10.0, "lon": 10.0}]},
     {"flight_plan": {"legs": [{"lat": 10.0, "lon": 10.0}]}},
     {"others": [{"id": "b", "lat": 10.0, "lon": 10.0}]},

@@ -5,10 +5,7 @@ use crate::codec::{Damaged, Reader, Writer};
 use crate::counters::Refused;
 use crate::position::{Position, Shown, TrackId};
 use navbound_core::quantity::{Reason, Status};
-use navbound_formats::receiver::position::{Dated, Datum, Decoder, Ends, Heard, Item, Kind, Message, OfDay, State};
-
-/// Most messages of an unfinished epoch: one of a kind, and four of each that talkers share. Provenance: ours.
-const MOST_MESSAGES: u32 = 18;
+use navbound_formats::receiver::position::{Dated, Datum, Decoder, Ends, Heard, Item, Kind, MOST_MESSAGES, Message, OfDay, State};
 
 /// A report, or why there is none; nothing for a date or a datum.
 pub(super) fn decoded(item: Item, track: TrackId) -> Option<Decoded> {
@@ -64,7 +61,7 @@ pub(super) fn write(decoder: &Decoder, to: &mut Writer) {
 
 pub(super) fn read(kind: Kind, from: &mut Reader<'_>) -> Result<Decoder, Damaged> {
     let (key, n) = (from.option(Reader::i64)?, from.u32()?);
-    if n > MOST_MESSAGES {
+    if n as usize > MOST_MESSAGES {
         return Err(Damaged("more messages than an epoch has"));
     }
     let messages = (0..n).map(|_| Ok(Message { kind: from.u32()?, record: from.u64()?, body: from.bytes()?.to_vec() }));

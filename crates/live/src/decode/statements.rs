@@ -50,6 +50,8 @@ pub type PlaceWords = ([Vec<String>; 11], [f64; 2]);
 const MOST_COUNTED: f64 = 1e5;
 /// Names beyond it are no pair's \[1\].
 const LONGEST_OF_A_PAIR: usize = 200;
+/// First parts of names of a height (ours).
+const HEIGHTS: [&str; 5] = ["alt", "altitude", "height", "ele", "elevation"];
 /// Nearer to zero a letter of a hemisphere contradicts nothing (ours) \[rad\].
 const NO_SIDE_RAD: f64 = 1e-4;
 
@@ -72,6 +74,12 @@ impl Places {
         });
         let [of_any, of_inertial] = self.apart_m;
         apart_m.reduce(f64::min).map(|apart_m| apart_m > if any(&self.inertial) { of_inertial } else { of_any })
+    }
+
+    /// Whether a name is one of a coordinate or of a height: it states where the vehicle is, and nothing of how well that is known.
+    fn is_of_a_place(&self, name: &str) -> bool {
+        let parts = parts(name);
+        has(&parts, &self.latitude) || has(&parts, &self.longitude) || parts.first().is_some_and(|first| HEIGHTS.contains(&&**first))
     }
 
     /// Whether the parts of a name are those of both coordinates.
@@ -226,7 +234,7 @@ impl Statements {
                 self.speaks_against(&format!("{key}_{name}"), each).or_else(|| self.speaks_against(name, each))
             }))
             // What is said of a position in words that nobody knows speaks against it.
-            .or_else(|| self.kind(key).map(|_| true)),
+            .or_else(|| self.kind(key).filter(|_| !inner.keys().all(|name| self.places.is_of_a_place(name))).map(|_| true)),
             Value::String(text) if written(text).is_some() => written(text).and_then(|value| self.speaks_against(key, &value)),
             // A letter of a hemisphere is no number of satellites.
             _ if self.places.is_hemisphere(key, value) => None,
@@ -247,7 +255,7 @@ impl Statements {
                 let pairs = halves.iter().filter_map(|(stem, pair)| self.places.pair_contradicts(&format!("{key}_{stem}"), pair, at));
                 any(&mut each.chain(pairs))
             }
-            Value::Array(all) if all.iter().any(|each| each.is_object() || each.is_array()) => {
+            Value::Array(all) if all.len() == 1 || all.iter().any(|each| each.is_object() || each.is_array()) => {
                 any(&mut all.iter().filter_map(|each| self.elsewhere(key, each, at)))
             }
             Value::String(text) if written(text).is_some() => written(text).and_then(|value| self.elsewhere(key, &value, at)),
@@ -289,9 +297,9 @@ fn is_shape(of: &serde_json::Map<String, Value>, name: &str) -> bool {
     name == "type" && ["coordinates", "geometry"].iter().any(|key| of.contains_key(*key))
 }
 
-/// An object of JSON that is written into a text.
+/// An object or a list of JSON that is written into a text.
 fn written(text: &str) -> Option<Value> {
-    text.trim_start().starts_with('{').then(|| serde_json::from_str(text).ok()).flatten()
+    text.trim_start().starts_with(['{', '[']).then(|| serde_json::from_str(text).ok()).flatten()
 }
 
 /// A name without case, blanks and strokes.

@@ -1,6 +1,8 @@
 //! Places that nobody was at, heights, counts of satellites, and the count of what was not used.
 
 use super::*;
+use crate::decode::Format;
+use navbound_formats::receiver::position::Kind;
 
 /// Epochs of lines of one track that flies 64 m/s, which are judged alone and from a file.
 fn from_file(lines: impl Iterator<Item = String>) -> (Vec<EpochOut>, Lane) {
@@ -180,6 +182,8 @@ fn a_line_with_another_place_of_the_vehicle_is_not_believed() {
         "\"ns\":\"S\"".to_owned(),
         // What is said beside a place that agrees is heard all the same.
         format!("\"gps\":\"{{\\\"lat\\\":{lat_deg},\\\"spoofed\\\":1}}\""),
+        "\"payload\":\"[{\\\"spoofed\\\":1}]\"".to_owned(),
+        "\"gps_lat\":[29.1]".to_owned(),
         "\"status_lat\":\"N\",\"spoofed\":\"yes\"".to_owned(),
         "\"gps_lat\":\"29.1° N\"".to_owned(),
         "\"gps_lat\":\"29° 6.0' N\"".to_owned(),
@@ -205,6 +209,42 @@ fn a_line_with_another_place_of_the_vehicle_is_not_believed() {
     ] {
         assert_eq!(of(&near), Some(Status::Ok), "{near}");
     }
+}
+
+/// Sentences of NMEA of one time, as many as an epoch keeps of each kind and more: a snapshot among them is read again.
+#[test]
+fn a_snapshot_within_the_fullest_epoch_is_read_again() {
+    let mut lane = Lane::new(Settings { format: Format::Receiver(Kind::Nmea), ..settings() }).unwrap();
+    let place = "2838.87,N,00543.77,E";
+    let bodies = [
+        format!("GPGGA,120000.00,{place},1,08,1.0,100.0,M,47.0,M,,"),
+        format!("GPRMC,120000.00,A,{place},36.0,0.0,221126,,,A"),
+        format!("GPGLL,{place},120000.00,A,A"),
+        format!("GPGNS,120000.00,{place},AA,08,1.0,100.0,45.0,,"),
+        format!("PUBX,00,120000.00,{place},147.0,G3,2.1,3.0,0.0,0.0,0.0,,0.9,1.2,0.8,8,0,0"),
+        "GPGST,120000.00,1.0,,,,2.0,3.0,4.0".to_owned(),
+        "GPGBS,120000.00,1.0,1.0,1.0,,,,".to_owned(),
+        "GPGSA,A,3,01,02,03,04,,,,,,,,,2.0,1.0,1.7".to_owned(),
+        "GPVTG,0.0,T,,M,36.0,N,66.7,K,A".to_owned(),
+    ];
+    let mut all = Vec::new();
+    for (kind, body) in bodies.iter().enumerate() {
+        for _ in 0..if kind == 0 {
+            1
+        } else if (5..7).contains(&kind) {
+            4
+        } else {
+            20
+        } {
+            let text = format!("${body}*{:02X}\r\n", body.bytes().fold(0, |sum, byte| sum ^ byte));
+            lane.step(&Input::Chunk { arrival: None, bytes: text.as_bytes() }, &mut all);
+            let snapshot = lane.snapshot(0, 0);
+            lane = Lane::restore(lane.settings.clone(), &snapshot).unwrap().0;
+            assert_eq!(lane.snapshot(0, 0), snapshot);
+        }
+    }
+    lane.step(&Input::End { arrival: None }, &mut all);
+    assert_eq!(all.iter().filter(|output| matches!(output, Output::Epoch(_))).count(), 1);
 }
 
 /// A position that stands for a second in 26 and goes on from there is within every limit of a moment, and is behind for ever.

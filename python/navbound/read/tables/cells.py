@@ -51,7 +51,7 @@ _IN_FIELDS = ("m", "mps")
 
 def _with_units(text: pl.Series, units: Mapping[str, float], factor: float) -> pl.Series:
     """Numbers with a known unit behind each, in the unit of the column; null for anything else."""
-    parts = text.str.to_lowercase().str.extract_groups(r"^([+-]?\d+(?:\.\d*)?)\s*([a-z][a-z/]*)$").struct.unnest()
+    parts = text.str.to_lowercase().str.extract_groups(r"^([+-]?\d+(?:\.\d*)?(?:e[+-]?\d+)?)\s*([a-z][a-z/ ]*)$").struct.unnest()
     of_unit = parts["2"].replace_strict(units, default=None, return_dtype=pl.Float64)
     return parts["1"].cast(pl.Float64, strict=False) * of_unit / factor
 
@@ -63,7 +63,7 @@ def lengths(column: pl.Series, factor: float) -> pl.Series:
     """
     raw = column.cast(pl.Float64, strict=False)
     if column.dtype == pl.String:
-        text = column.str.strip_chars().str.replace(r"^[±<>=~≤≥≈\s]+", "")
+        text = column.str.strip_chars().str.replace(r"^(?:\+/-|[±<>=~≤≥≈\s])+", "")
         plain = text.cast(pl.Float64, strict=False)
         raw = pl.select(pl.coalesce(raw, plain, _with_units(text, UNITS["m"], factor))).to_series()
     return raw.abs().fill_nan(None)

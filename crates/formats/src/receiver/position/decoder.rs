@@ -1,6 +1,6 @@
 //! Frames of a receiver to positions, one after the other.
 
-use super::epoch::{Ends, Epoch, Message, State, TALKERS, all_of_kind};
+use super::epoch::{Ends, Epoch, Message, State, TALKERS, WITNESSES, all_of_kind};
 use super::nmea::{Dated, Heard};
 use super::{Kind, Position, nmea, novatel, sbf, ubx};
 use crate::stream::Frame;
@@ -101,7 +101,7 @@ impl Decoder {
                 self.end_at_last(out);
             }
             Step::PartOfTalkers { key, kind } => {
-                let complete = self.epoch.put_again(key, Message { kind, record, body: body.to_vec() });
+                let complete = self.epoch.put_again(key, Message { kind, record, body: body.to_vec() }, TALKERS);
                 self.emit(&complete, out);
                 self.end_at_last(out);
             }
@@ -125,16 +125,19 @@ impl Decoder {
                 let before = || all_of_kind(&self.epoch.state.messages, kind).filter(|_| known);
                 let (n_before, places) = (before().count(), nmea::places(kind, self.heard.gga));
                 // Of several talkers each is heard; what states no epoch of its own begins none, however often it comes.
-                // Two letters are the talker.
-                let passed = !kept || (!places && before().any(|each| each.body.get(2..) == body.get(2..)));
-                if !passed && (n_before < TALKERS || places) {
+                let most = if places { TALKERS } else { WITNESSES };
+                if kept && (n_before < most || places) {
                     let message = Message { kind, record, body: body.to_vec() };
-                    let complete = if n_before > 0 { self.epoch.put_again(key, message) } else { self.epoch.put(key, message) };
+                    let complete = if n_before > 0 { self.epoch.put_again(key, message, most) } else { self.epoch.put(key, message) };
                     self.emit(&complete, out);
+                } else if kept {
+                    // Two letters are the talker.
+                    let repeats = before().any(|each| each.body.get(2..) == body.get(2..));
+                    let reason = "more different sentences of one kind than an epoch has";
+                    out.extend((!repeats).then_some(Item::Malformed(Malformed { record, reason })));
+                    self.epoch.pass_again(key, kind);
                 } else if known {
                     self.epoch.pass(key, kind);
-                    let reason = "more different sentences of one kind than an epoch has";
-                    out.extend((!passed).then_some(Item::Malformed(Malformed { record, reason })));
                 }
                 // A date of another time ends no epoch: some receivers write it between a position and its accuracy, a moment later.
                 self.heard.dated = dated.or(self.heard.dated);

@@ -23,12 +23,22 @@ pub struct Message {
 /// Talkers that write one message for one epoch, each constellation and all together (ours) \[1\].
 pub(super) const TALKERS: usize = 4;
 
+/// Messages of a kind beside the position that one epoch keeps: what states no epoch of its own may be written by each of many talkers, and
+/// twice (ours) \[1\].
+pub(super) const WITNESSES: usize = 16;
+
+/// Messages that an unfinished epoch holds at most: of RMC, GLL, GNS and PUBX what is kept, GST and GBS of each talker, and one of a few more kinds.
+pub const MOST_MESSAGES: usize = 4 * WITNESSES + 2 * TALKERS + 8;
+
+/// The bits of [`State::newest`] that are the kind.
+const KIND: u32 = 0x00FF_FFFF;
+
 /// What an unfinished epoch consists of.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct State {
     /// What the messages of an epoch have in common: time of week, or time of day.
     pub key: Option<i64>,
-    /// The messages so far, at most one of a kind, and a few of one that several talkers write.
+    /// The messages so far, at most one of a kind, and several of one that several talkers write.
     pub messages: Vec<Message>,
     /// Kind of the newest message of this epoch; in the highest byte how many of its kind came before it, where talkers share one.
     pub newest: u32,
@@ -60,14 +70,14 @@ impl Epoch {
         complete
     }
 
-    /// A message that several talkers write for one epoch, each with what it knows.
-    pub(super) fn put_again(&mut self, key: i64, message: Message) -> Vec<Message> {
+    /// A message that several talkers write for one epoch, each with what it knows; one more than `most` begins another epoch.
+    pub(super) fn put_again(&mut self, key: i64, message: Message, most: usize) -> Vec<Message> {
         let of_kind = self.state.messages.iter().filter(|each| each.kind == message.kind).count();
-        if self.state.key != Some(key) || of_kind == 0 || of_kind >= TALKERS {
+        if self.state.key != Some(key) || of_kind == 0 || of_kind >= most {
             return self.put(key, message);
         }
         // The third of a kind is another last message than the second.
-        self.pass(key, message.kind | (of_kind as u32) << 24);
+        self.pass(key, message.kind | (of_kind as u32) << KIND.count_ones());
         self.state.messages.push(message);
         Vec::new()
     }
@@ -89,6 +99,13 @@ impl Epoch {
             (self.state.key, self.state.last) = (Some(key), self.state.newest);
         }
         self.state.newest = kind;
+    }
+
+    /// A further message of a kind of which the epoch keeps no more: each is another last message than the one before it.
+    pub(super) fn pass_again(&mut self, key: i64, kind: u32) {
+        let of_kind = |newest: u32| newest & KIND == kind;
+        let n_before = if of_kind(self.state.newest) { (self.state.newest >> KIND.count_ones()) + 1 } else { WITNESSES as u32 };
+        self.pass(key, kind | n_before.min(u32::from(u8::MAX)) << KIND.count_ones());
     }
 
     /// Whether the newest message was the last by habit.

@@ -16,7 +16,7 @@ mod ubx;
 
 pub use datum::Datum;
 pub use decoder::{Decoder, Item, Malformed};
-pub use epoch::{Ends, Message, State};
+pub use epoch::{Ends, MOST_MESSAGES, Message, State};
 pub use nmea::{Dated, Heard};
 
 use crate::stream::Family;

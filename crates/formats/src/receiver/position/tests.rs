@@ -293,10 +293,26 @@ fn what_another_sentence_says_against_a_position_takes_it_away() {
     let bodies: Vec<&str> = [ZDA].into_iter().chain(many.iter().map(String::as_str)).chain([GGA, GST]).collect();
     assert_eq!((read_sentences(&bodies).n_rows, reasons(&bodies).len()), (1, 0));
     // More different ones than are kept are counted: none is passed over in silence.
-    let moved: Vec<String> = (0..6).map(|k| rmc("A", "A", &format!("4900.000{k}"))).collect();
+    let moved: Vec<String> = (0..18).map(|k| rmc("A", "A", &format!("4900.00{k:02}"))).collect();
     let bodies: Vec<&str> = [ZDA].into_iter().chain(moved.iter().map(String::as_str)).chain([GGA, GST]).collect();
     assert_eq!(reasons(&bodies), [("damaged_message", "more different sentences of one kind than an epoch has".to_owned())]);
     assert_eq!(read_sentences(&bodies).left_out[0].count, 2);
+    // A stream ends no epoch before its last sentence, however often it is repeated: an RMC that is far away ends it.
+    for n in 1..20 {
+        let mut bodies = vec![ZDA.to_owned()];
+        for second in 0..6 {
+            let of = |body: &str| body.replace("120000", &format!("12000{second}"));
+            bodies.push(of(GGA));
+            bodies.extend((0..n).map(|k| of(&rmc("A", "A", "4900.0000")).replacen("GP", ["GP", "GN", "II"][k % 3], 1)));
+            bodies.push(of(&rmc("A", "A", "4918.0000")));
+        }
+        let frames: Vec<Frame<'_>> = bodies.iter().map(|body| Frame::Nmea(body.as_bytes())).collect();
+        let stated = |p: &&Position| p.absent.as_ref().map(|absent| absent.reason);
+        let all = items(&frames, Kind::Nmea, Ends::WithLast, false);
+        let damaged = all.iter().filter(|item| matches!(item, Item::Malformed(_))).count();
+        let expected = if n < 16 { (vec![Some(Reason::Contradicted); 6], 0) } else { (vec![None; 6], 6) };
+        assert_eq!((positions(&all).iter().map(stated).collect::<Vec<_>>(), damaged), expected, "{n}");
+    }
     let gns = |talker: &str, mode: &str| format!("{talker}GNS,120000.00,4900.0000,N,00230.0000,E,{mode},08,1.0,100.0,45.0,,");
     assert_eq!(reasons(&[ZDA, GGA, &gns("GP", "A"), &gns("GL", "N"), GST]), []);
     assert_eq!(reasons(&[ZDA, GGA, &gns("GP", "N"), &gns("GL", "N"), GST]), [("contradicted", "GNS mode N".to_owned())]);
