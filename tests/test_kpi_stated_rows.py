@@ -105,7 +105,7 @@ def test_half_an_error_within_the_level_is_not_known() -> None:
     assert (result.n_mi_epochs, result.axes[0].error_m.n, result.n_solution) == (0, 9, 10)
 
 
-@pytest.mark.parametrize("errors", ["inf,0,1", "1e300,0,1", "100 steps,0,1", '"100,0",0,1', "0,-inf,1", "0,0,inf", "0,0,1e5 m"])
+@pytest.mark.parametrize("errors", ["inf,0,1", "1e300,0,1", "100 steps,0,1", '"100,0",0,1', "0,-inf,1", "0,0,inf", "0,0,1e5 steps"])
 def test_an_error_that_is_written_and_no_number_shows_nothing(errors: str, tmp_path: Path) -> None:
     judged = verdict(tmp_path, f"{errors},15,22,10,ok,")
     assert judged.id == "not_shown"
@@ -137,8 +137,9 @@ def test_a_row_on_too_few_satellites_has_no_level(n_sv: int, status: str, has: b
     assert (judged.id, judged.n_judged) == (("inside", N) if has else ("not_shown", N - 10))
 
 
-def test_an_error_and_a_level_with_their_unit_are_read(tmp_path: Path) -> None:
+@pytest.mark.parametrize("row", ["100 m,0,1,15m", "1e2 m,0,1,0.015 km", "1E+2 M,0,1 m,15"])
+def test_an_error_and_a_level_with_their_unit_are_read(row: str, tmp_path: Path) -> None:
     """An error of 100 m beside a level of 15 m."""
-    bare, with_units = (verdict(tmp_path, f"{row},22,10,ok,") for row in ("100,0,1,15", "100 m,0,1,15m"))
+    bare, with_units = (verdict(tmp_path, f"{each},22,10,ok,") for each in ("100,0,1,15", row))
     assert (with_units.id, with_units.words) == (bare.id, bare.words)
     assert bare.id == "not_believable"
