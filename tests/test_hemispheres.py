@@ -51,6 +51,15 @@ def test_a_minus_in_the_south_says_the_same_and_in_the_north_the_contrary(tmp_pa
         navbound.analyze(logged(tmp_path / "b.csv", ("N", "E"), sign=-1), spec="RNP 0.3", sigma_m=5.0)
 
 
+@pytest.mark.parametrize("reason", ["S", "T", "TS"])
+def test_letters_of_another_kind_beside_a_coordinate_with_its_own_are_none_of_it(tmp_path: Path, reason: str) -> None:
+    """Loggers write by which event a row was recorded: time, distance, speed."""
+    lines = logged(tmp_path / "a.csv", ("N", "E")).read_text().splitlines()
+    rows = [f"{line},{reason if k % 3 else 'T'}" for k, line in enumerate(lines[1:])]
+    (tmp_path / "b.csv").write_text("\n".join([f"{lines[0]},RCR", *rows]) + "\n")
+    assert navbound.analyze(tmp_path / "b.csv", spec="RNP 0.3", sigma_m=5.0).summary.verdict.id == "inside"
+
+
 @pytest.mark.parametrize("odd", ["", "X", "E"])
 def test_a_row_without_a_hemisphere_has_no_position(tmp_path: Path, odd: str) -> None:
     run = navbound.analyze(logged(tmp_path / "a.csv", ("S", "W"), odd=odd), spec="RNP 0.3", sigma_m=5.0)

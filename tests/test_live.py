@@ -497,3 +497,21 @@ def test_a_file_that_analyze_reads_is_no_stream(tmp_path: Path) -> None:
     done = CliRunner().invoke(app, ["live", str(pos), "--out", str(tmp_path / "out")])
     assert isinstance(done.exception, InputError)
     assert "this is RTKLIB solutions, which navbound analyze reads" in str(done.exception)
+    flight = tmp_path / "a.igc"
+    flight.write_text("AXXX001\r\nHFDTE010526\r\n" + "B1000004854000N00217500EA0030000350\r\n" * 9)
+    done = CliRunner().invoke(app, ["live", str(flight), "--out", str(tmp_path / "out")])
+    assert isinstance(done.exception, InputError)
+    assert "this is flight log of a glider (IGC), which is not read: make a table of it" in str(done.exception)
+
+
+@pytest.mark.parametrize(("step_s", "says"), [(1, False), (12, True)])
+def test_positions_further_apart_than_monitoring_waits_say_what_to_state(tmp_path: Path, step_s: int, says: bool) -> None:
+    log, record = tmp_path / "log.jsonl", {"v": 1, "track": "A", "fte_m": 5.0, "course_rad": 0.0, "sigma_m": 3.0}
+    times = (1_317_644_000_000_000_000 + k * step_s * 1_000_000_000 for k in range(20))
+    log.write_text("".join(json.dumps(record | {"time_ns": time_ns}) + "\n" for time_ns in times))
+    done = CliRunner().invoke(app, ["live", str(log), "--out", str(tmp_path / "out")])
+    words = "positions come every 12 s, and monitoring is lost after 2 s without one: --period-s 12 states their period"
+    assert (done.exit_code, words in done.output) == (0, says), done.output
+    more = ["--period-s", str(step_s), "--time-to-alert-s", "40", "--out", str(tmp_path / "stated")]
+    stated = CliRunner().invoke(app, ["live", str(log), *more])
+    assert ("0 transitions" in stated.output, "--period-s" in stated.output) == (True, False), stated.output

@@ -90,6 +90,12 @@ AGAINST: list[dict[str, object]] = [
     {"gps": {"lat": 48.71, "lon": 1.72, "word": "unheard of"}},
     {"gps": {"lat": 48.0, "lon": 12.5}},
     {"sensors": [{"lat": 48.71, "valid": False}]},
+    {"gps": [48.0, 12.5]},
+    {"gps": "48.01, 12.52"},
+    {"gps": [1, 0]},
+    {"gps_lat": "4842.6", "gps_lat_dir": "S"},
+    {"gps": {"lat": "4801.0", "lat_dir": "N"}},
+    {"latitude": 48.71, "latitude_ref": "S"},
 ]
 NOT_AGAINST: list[dict[str, object]] = [
     {"alerts": []},
@@ -120,6 +126,12 @@ NOT_AGAINST: list[dict[str, object]] = [
     {"waypoints": [{"lat": 10.0, "lon": 10.0}]},
     {"flight_plan": {"legs": [{"lat": 10.0, "lon": 10.0}]}},
     {"others": [{"id": "b", "lat": 10.0, "lon": 10.0}]},
+    {"gps": [48.71, 1.72]},
+    {"gps": "48.71, 1.72"},
+    {"lat": "4842.6", "lat_dir": "N", "lon": "00143.2", "lon_dir": "E"},
+    {"nmea": {"lat": "4842.6", "lat_dir": "N", "lon": "00143.2", "lon_dir": "E"}},
+    {"lat": 48.71, "ns": "N", "lon": 1.72, "ew": "E"},
+    {"obstacles": [{"lat": 10.0, "lon": 10.0}], "to_lat": 10.0, "lat_ms": 12.5},
 ]
 
 
@@ -133,6 +145,17 @@ def test_a_statement_in_a_list_an_object_or_a_text_is_heard(tmp_path: Path, more
 def test_what_says_nothing_against_a_position_leaves_it(tmp_path: Path, more: dict[str, object]) -> None:
     epochs, _ = lived(tmp_path / "out", **more)
     assert set(epochs["status"]) == {"ok"}
+
+
+def test_what_speaks_against_positions_is_counted_by_name_and_outlives_a_stop(tmp_path: Path) -> None:
+    session = live.Session(tmp_path / "out", Settings(format="json", rnp_m=555.6))
+    session.take(chunk(lines(20, valid=False, gps_lat=10.0, gps_lon=1.72)))
+    session.snapshot()
+    session.close()
+    with closing(live.Session(tmp_path / "out", Settings(format="json", rnp_m=555.6), resume=True)) as resumed:
+        assert resumed.against() == {"gps_lat": 20, "valid": 20}
+    assert statements.against({"b": 2, "a": 2, "c": 30}) == "what speaks against positions: 30 c, 2 a, 2 b"
+    assert statements.against(dict.fromkeys("abcdefg", 1)) == "what speaks against positions: 1 a, 1 b, 1 c, 1 d, 1 e and 2 more"
 
 
 @pytest.mark.parametrize("odd", ["1e999", "9" * 400, '"\\ud800"', "[" * 200 + "]" * 200])

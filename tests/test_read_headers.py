@@ -37,6 +37,23 @@ def test_a_header_that_a_person_understands_is_understood(tmp_path: Path, header
     assert reading.rejected == []
 
 
+def test_a_separator_at_the_end_of_the_header_alone_is_no_column(tmp_path: Path) -> None:
+    reading = read(table(tmp_path, "time,lat,lon,"))
+    assert (reading.epochs.height, reading.rejected) == (3, [])
+    # Rows that have the field keep it, and a row without it is damaged.
+    path = table(tmp_path, "time,lat,lon,", "{t},47.0,8.{t},")
+    assert (read(path).epochs.height, read(path).rejected) == (3, [])
+    path.write_text(path.read_text(encoding="utf-8") + "1600000003,47.0,8.3\n" + "".join(f"{1600000004 + k},47,8,\n" for k in range(20)))
+    (refused,) = read(path).rejected
+    assert (refused.count, "fields" in refused.reason) == (1, True)
+
+
+@pytest.mark.parametrize(("name", "written", "n"), [("NSAT (USED/VIEW)", "3(7)", 3), ("nsat", "9/12", 9), ("sats", "7 (11)", 7)])
+def test_satellites_that_are_used_stand_before_those_in_view(tmp_path: Path, name: str, written: str, n: int) -> None:
+    reading = read(table(tmp_path, f"time,lat,lon,{name}", "{t},47.0,8.{t}," + written))
+    assert (reading.columns["n_sv"], reading.epochs["n_sv"].to_list(), reading.rejected) == (f"{name}:1", [n] * 3, [])
+
+
 def test_a_remark_with_other_fields_than_the_rows_is_none_of_their_names(tmp_path: Path) -> None:
     with pytest.raises(FormatError, match="time: no column holds it"):
         read(table(tmp_path, "# time,lat,lon,h"))

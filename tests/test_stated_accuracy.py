@@ -152,7 +152,20 @@ def test_a_text_among_the_numbers_that_are_compared_is_counted(tmp_path: Path) -
 
 @pytest.mark.parametrize("name", ["accuracy", "h_acc", "cep", "drms", "hAcc", "h_err"])
 @pytest.mark.parametrize(
-    "written", ["2500 m", "2500.0 M", "2.5 km", "8202 ft", "±2500 m", ">= 10 NM", "> 5000", "2.5e3 m", "1.5 nautical miles", "+/- 2500 m"]
+    "written",
+    [
+        "2500 m (95%)",
+        "2500 m",
+        "2500.0 M",
+        "2.5 km",
+        "8202 ft",
+        "±2500 m",
+        ">= 10 NM",
+        "> 5000",
+        "2.5e3 m",
+        "1.5 nautical miles",
+        "+/- 2500 m",
+    ],
 )
 def test_an_accuracy_with_its_unit_in_the_field_is_compared(tmp_path: Path, name: str, written: str) -> None:
     for n_far in (N, 5):

@@ -325,7 +325,12 @@ impl Lane {
 
     /// Keys of lines that were passed over, by name.
     pub fn passed_over(&self) -> &BTreeMap<String, u64> {
-        &self.decoder.passed_over.0
+        &self.decoder.keys.passed_over.0
+    }
+
+    /// Keys of lines, and words of a receiver's messages, that took positions away, by name.
+    pub fn against(&self) -> &BTreeMap<String, u64> {
+        &self.decoder.keys.against.0
     }
 
     /// Counters of all monitors together.

@@ -18,7 +18,7 @@ use navbound_core::quantity::GpsTime;
 use navbound_core::quantity::encoding::crc32c;
 
 /// Version of the layout.
-const VERSION: u8 = 25;
+const VERSION: u8 = 26;
 
 /// Why a snapshot is not taken up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

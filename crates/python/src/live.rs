@@ -180,6 +180,11 @@ impl LiveLane {
         self.lane.passed_over().clone()
     }
 
+    /// Keys of lines, and words of messages, that took positions away, by name.
+    fn against(&self) -> BTreeMap<String, u64> {
+        self.lane.against().clone()
+    }
+
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let counts = crate::rnp::counters_dict(py, &self.lane.monitor_counters())?;
         for (name, n) in self.lane.counters().named() {

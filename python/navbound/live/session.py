@@ -176,6 +176,10 @@ class Session:
         """Keys of lines of JSON that nothing reads, by name, and how often each came."""
         return self._lane.passed_over()
 
+    def against(self) -> dict[str, int]:
+        """Keys of lines, and words of a receiver's messages, that took positions away, and of how many."""
+        return self._lane.against()
+
     def counters(self) -> dict[str, float]:
         """What was counted: records, refusals by reason, and the monitors' counters."""
         return dict(self._lane.counters())

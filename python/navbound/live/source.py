@@ -377,6 +377,7 @@ def format_of(name: str) -> str | None:
     known = formats.of(start)
     if known.id in FORMATS:
         return known.id
-    if known.id != "csv" and known.instead is None and "packed" not in known.holds:
-        raise InputError("source", name, domain=f"{', '.join(FORMATS)}; this is {known.title}, which navbound analyze reads")
+    if known.id != "csv" and "packed" not in known.holds:
+        otherwise = "which navbound analyze reads" if known.instead is None else f"which is not read: {known.instead}"
+        raise InputError("source", name, domain=f"{', '.join(FORMATS)}; this is {known.title}, {otherwise}")
     return None

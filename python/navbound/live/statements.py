@@ -44,6 +44,17 @@ def for_core() -> tuple[Kinds, list[str], Places]:
     return kinds, modes, (list(place_words()), [PLACES_APART_M, INERTIAL_APART_M])
 
 
+_AGAINST = 5
+"""What speaks against positions that a sentence names. [1]"""
+
+
+def against(counts: Mapping[str, int]) -> str:
+    """A sentence on what spoke against positions, the most frequent first."""
+    often = sorted(counts, key=lambda name: (-counts[name], name))
+    others = f" and {len(often) - _AGAINST} more" if len(often) > _AGAINST else ""
+    return f"what speaks against positions: {', '.join(f'{counts[name]} {name}' for name in often[:_AGAINST])}{others}"
+
+
 _SHOWN = 20
 """Keys that a sentence names; of those that may speak of accuracy or integrity all. [1]"""
 

@@ -91,8 +91,8 @@ _WHO = (
     "reg tail tail_number"
 )
 _SATELLITES = (
-    "ns nsv num_sv numsv n_sats nsats numsat num_sat numsats num_sats satellites n_satellites num_satellites sats svs n_used sats_used "
-    "svs_used sv_used satellites_used used_sats used_svs used_satellites n_sats_used n_sv_used num_sats_used num_sv_used "
+    "ns nsv nsat num_sv numsv n_sats nsats numsat num_sat numsats num_sats satellites n_satellites num_satellites sats svs n_used "
+    "sats_used svs_used sv_used satellites_used used_sats used_svs used_satellites n_sats_used n_sv_used num_sats_used num_sv_used "
     "num_satellites_used gps_sats gps_satellites gps_nsats gps_num_sats gps_sats_used gnss_sats gnss_satellites gnss_sats_used"
 )
 """Names of the number of satellites of a position; one of those in view is none the smaller."""

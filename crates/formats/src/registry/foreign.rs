@@ -4,6 +4,7 @@
 
 use super::File;
 use crate::mode_s;
+use crate::receiver::position::sign;
 use crate::stream::{Framer, Protocol};
 use navbound_core::signal::sbas::crc24q;
 
@@ -81,7 +82,7 @@ pub(super) fn igc(file: &File<'_>) -> bool {
     maker && begin.split(|byte| *byte == b'\n').any(|line| line.starts_with(b"HFDTE"))
 }
 
-/// Sentences of ships, behind the block that some receivers write before each; such a log may hold sentences of a position too, which count.
+/// Sentences of ships, behind the block that some receivers write before each. Where sentences state positions of the receiver, those count.
 pub(super) fn ais(file: &File<'_>) -> bool {
     let begin = file.content.get(..file.content.len().min(1 << 13)).unwrap_or_default();
     let sentence = |line: &[u8]| {
@@ -89,7 +90,8 @@ pub(super) fn ais(file: &File<'_>) -> bool {
     };
     let lines: Vec<&[u8]> =
         begin.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii).filter(|line| !line.is_empty()).take(FRAMES).collect();
-    !lines.is_empty() && lines.into_iter().all(|line| (line.starts_with(b"!") || line.starts_with(b"\\")) && sentence(line))
+    let of_ships = !lines.is_empty() && lines.into_iter().all(|line| (line.starts_with(b"!") || line.starts_with(b"\\")) && sentence(line));
+    of_ships && !sign::states_positions(file.content)
 }
 
 pub(super) fn gpx(file: &File<'_>) -> bool {

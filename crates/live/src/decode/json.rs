@@ -2,7 +2,8 @@
 //! under another key is heard, and every other one is counted by name.
 
 use super::Decoded;
-use super::statements::{self, PassedOver, Statements};
+use super::keys::Keys;
+use super::statements::{self, Statements};
 use crate::claims::Claim;
 use crate::counters::Refused;
 use crate::position::{Position, Shown, TrackId};
@@ -129,14 +130,14 @@ pub(super) fn track(line: &[u8]) -> Option<TrackId> {
     of(line).or_else(|| of(&without_nan(line)))
 }
 
-pub(super) fn position(line: &[u8], statements: &Statements, passed_over: &mut PassedOver) -> Decoded {
+pub(super) fn position(line: &[u8], statements: &Statements, keys: &mut Keys) -> Decoded {
     if let Ok(parsed) = serde_json::from_slice(line) {
-        return stated(&parsed, line, statements, passed_over);
+        return stated(&parsed, line, statements, keys);
     }
     // Programs write numbers that are none in ways that JSON has not.
     let plain = without_nan(line);
     if let Ok(parsed) = serde_json::from_slice(&plain) {
-        return stated(&parsed, &plain, statements, passed_over);
+        return stated(&parsed, &plain, statements, keys);
     }
     // A line that says of whom and of when it is, and no position: that track has none at that time.
     let named: Named<'_> = serde_json::from_slice(&plain).map_err(|_| Refused::NotAPosition)?;
@@ -145,10 +146,13 @@ pub(super) fn position(line: &[u8], statements: &Statements, passed_over: &mut P
 }
 
 /// A line, and what it says against itself under other keys.
-fn stated(parsed: &Line<'_>, line: &[u8], statements: &Statements, passed_over: &mut PassedOver) -> Decoded {
+fn stated(parsed: &Line<'_>, line: &[u8], statements: &Statements, keys: &mut Keys) -> Decoded {
     let position = whole(parsed)?;
-    let against = statements::heard(line, &KEYS, position.lat_rad.zip(position.lon_rad), statements, passed_over);
+    let against = statements::heard(line, &KEYS, position.lat_rad.zip(position.lon_rad), statements, keys);
     let stopped = parsed.nav_mode.as_deref().is_some_and(|mode| statements.stopped(mode));
+    if stopped {
+        keys.against.count("nav_mode");
+    }
     let status = if against { Status::InvalidInput } else { Status::NotAvailable };
     let refused = (against || stopped) && position.status.usable();
     Ok(if refused { Position { status, reason: Some(Reason::Reported), ..position } } else { position })

@@ -1,18 +1,21 @@
 //! Bytes of a source to position reports, one at a time.
 
 mod json;
+mod keys;
+mod places;
 mod readsb;
 mod receiver;
 mod squitters;
 mod statements;
 
-pub(crate) use statements::PassedOver;
-pub use statements::{PlaceWords, StatementRow, Statements};
+pub use places::PlaceWords;
+pub use statements::{StatementRow, Statements};
 
 use crate::claims::Claims;
 use crate::codec::{Damaged, Reader, Writer};
 use crate::counters::Refused;
 use crate::position::{Position, TrackId};
+use keys::Keys;
 use navbound_core::quantity::GpsTime;
 use navbound_formats::mode_s;
 use navbound_formats::receiver::position::{self, Ends, Kind};
@@ -114,21 +117,21 @@ pub(crate) struct Decoder {
     track: TrackId,
     /// What a line says of its position under other keys than those of the contract.
     statements: Arc<Statements>,
-    /// The keys of lines that were passed over.
-    pub(crate) passed_over: PassedOver,
+    /// What was heard beside positions, and what was passed over.
+    pub(crate) keys: Keys,
 }
 
 impl Decoder {
     pub(crate) fn new(format: Format, claims: Claims, track: TrackId, statements: Arc<Statements>) -> Self {
         let (framer, unfinished) = (Framer::new(format.protocol()), format.unfinished());
-        Self { framer, format, claims, unfinished, track, statements, passed_over: PassedOver::default() }
+        Self { framer, format, claims, unfinished, track, statements, keys: Keys::default() }
     }
 
     /// The next bytes, which arrived at `arrival`; how many frames or lines were whole.
     pub(crate) fn push(&mut self, bytes: &[u8], arrival: Option<GpsTime>, out: &mut Vec<Decoded>) -> u64 {
         let (mut n_frames, n_before) = (0, out.len());
-        let Self { framer, format, claims, unfinished, track, statements, passed_over } = self;
-        let mut of = Of { format: *format, claims, arrival, unfinished, track: *track, heard: (statements, passed_over) };
+        let Self { framer, format, claims, unfinished, track, statements, keys } = self;
+        let mut of = Of { format: *format, claims, arrival, unfinished, track: *track, heard: (statements, keys) };
         framer.push(bytes, &mut |frame| n_frames += u64::from(of.take(&frame, out)));
         if let (Unfinished::Sky(_), Some(new)) = (unfinished, out.get_mut(n_before..)) {
             squitters::keep_the_last(new);
@@ -138,16 +141,16 @@ impl Decoder {
 
     /// No bytes came for a while, or none will: what waits is all there is.
     pub(crate) fn flush(&mut self, arrival: Option<GpsTime>, out: &mut Vec<Decoded>) {
-        let Self { framer, format, claims, unfinished, track, statements, passed_over } = self;
+        let Self { framer, format, claims, unfinished, track, statements, keys } = self;
         let track = *track;
-        let mut of = Of { format: *format, claims, arrival, unfinished, track, heard: (statements, passed_over) };
+        let mut of = Of { format: *format, claims, arrival, unfinished, track, heard: (statements, keys) };
         framer.flush(&mut |frame| {
             of.take(&frame, out);
         });
         if let Unfinished::Epoch(epochs) = unfinished {
             let mut items = Vec::new();
             epochs.finish(&mut items);
-            out.extend(items.into_iter().filter_map(|item| receiver::decoded(item, track)));
+            out.extend(items.into_iter().filter_map(|item| receiver::decoded(item, track, &mut keys.against)));
         }
     }
 
@@ -155,7 +158,7 @@ impl Decoder {
         let (rest, skipping) = self.framer.rest();
         to.bytes(rest);
         to.flag(skipping);
-        self.passed_over.write(to);
+        self.keys.write(to);
         match &self.unfinished {
             Unfinished::Nothing => {}
             Unfinished::Epoch(epochs) => receiver::write(epochs, to),
@@ -172,13 +175,13 @@ impl Decoder {
     ) -> Result<Self, Damaged> {
         let (rest, skipping) = (from.bytes()?, from.flag()?);
         let framer = Framer::with_rest(format.protocol(), rest, skipping).map_err(|_| Damaged("more bytes wait than a frame has"))?;
-        let passed_over = PassedOver::read(from)?;
+        let keys = Keys::read(from)?;
         let unfinished = match format {
             Format::Json | Format::Readsb => Unfinished::Nothing,
             Format::Beast | Format::Avr => Unfinished::Sky(Sky::read(from)?),
             Format::Receiver(kind) => Unfinished::Epoch(receiver::read(kind, from)?),
         };
-        Ok(Self { framer, format, claims, unfinished, track, statements, passed_over })
+        Ok(Self { framer, format, claims, unfinished, track, statements, keys })
     }
 }
 
@@ -189,7 +192,7 @@ struct Of<'a> {
     arrival: Option<GpsTime>,
     unfinished: &'a mut Unfinished,
     track: TrackId,
-    heard: (&'a Statements, &'a mut PassedOver),
+    heard: (&'a Statements, &'a mut Keys),
 }
 
 impl Of<'_> {
@@ -200,7 +203,9 @@ impl Of<'_> {
             return false;
         };
         match (frame, &mut *self.unfinished, self.format) {
-            (Frame::Line(line), Unfinished::Nothing, Format::Readsb) => out.push(readsb::position(text(line), self.claims, self.heard.0)),
+            (Frame::Line(line), Unfinished::Nothing, Format::Readsb) => {
+                out.push(readsb::position(text(line), self.claims, self.heard.0, self.heard.1))
+            }
             (Frame::Line(line), Unfinished::Nothing, _) => out.push(json::position(text(line), self.heard.0, self.heard.1)),
             (Frame::Line(line), Unfinished::Sky(sky), _) => match mode_s::of_line(line) {
                 Some((message, n)) => out.extend(squitters::heard(sky, message.get(..n), self.arrival, self.claims)),
@@ -214,7 +219,7 @@ impl Of<'_> {
             (frame, Unfinished::Epoch(epochs), _) => {
                 let mut items = Vec::new();
                 epochs.take(frame, 0, &mut items);
-                out.extend(items.into_iter().filter_map(|item| receiver::decoded(item, self.track)));
+                out.extend(items.into_iter().filter_map(|item| receiver::decoded(item, self.track, &mut self.heard.1.against)));
             }
             _ => {}
         }

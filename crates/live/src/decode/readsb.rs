@@ -2,7 +2,8 @@
 //! and integrity (NIC, SIL). docs/methods/live.md says what becomes of a claim.
 
 use super::Decoded;
-use super::statements::{self, PassedOver, Statements};
+use super::keys::Keys;
+use super::statements::{self, Statements};
 use crate::claims::{Claim, Claims};
 use crate::counters::Refused;
 use crate::position::{Position, Shown, TrackId};
@@ -152,7 +153,7 @@ fn address(hex: &str) -> Option<TrackId> {
     TrackId::new(&hex.to_ascii_lowercase()).filter(|_| known)
 }
 
-pub(super) fn position(bytes: &[u8], claims: &Claims, statements: &Statements) -> Decoded {
+pub(super) fn position(bytes: &[u8], claims: &Claims, statements: &Statements, keys: &mut Keys) -> Decoded {
     let line: Line<'_> = serde_json::from_slice(bytes).map_err(|_| Refused::NotAPosition)?;
     let track = address(&line.hex).ok_or(Refused::TrackName)?;
     // A line without a position says something else of the aircraft: its silence is found by its missing positions.
@@ -191,7 +192,10 @@ pub(super) fn position(bytes: &[u8], claims: &Claims, statements: &Statements) -
     if of_the_future {
         return Ok(known.without(Reason::Reported));
     }
-    if statements::heard(bytes, &KEYS, known.lat_rad.zip(known.lon_rad), statements, &mut PassedOver::default()) {
+    // Keys that nothing reads are many, and those of readsb.
+    let mut beside = Keys::default();
+    if statements::heard(bytes, &KEYS, known.lat_rad.zip(known.lon_rad), statements, &mut beside) {
+        beside.against.0.keys().for_each(|name| keys.against.count(name));
         return Ok(Position { status: Status::InvalidInput, reason: Some(Reason::Reported), ..known });
     }
     Ok(known.bounded(claims.bounds_beside(claim, rc)))
@@ -207,7 +211,7 @@ mod tests {
     fn stated(line: &str) -> Decoded {
         let lost = (vec!["gps_ok_before".into()], vec!["null".into()], None, None);
         let statements = Statements::new(vec![lost], Vec::new(), (Default::default(), [1852.0, 18_520.0]));
-        position(line.as_bytes(), &CLAIMS, &statements)
+        position(line.as_bytes(), &CLAIMS, &statements, &mut Keys::default())
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Positions of a receiver as reports, and the state of their decoder as bytes.
 
 use super::Decoded;
+use super::keys::Names;
 use crate::codec::{Damaged, Reader, Writer};
 use crate::counters::Refused;
 use crate::position::{Position, Shown, TrackId};
@@ -8,14 +9,18 @@ use navbound_core::quantity::{Reason, Status};
 use navbound_formats::receiver::position::{Dated, Datum, Decoder, Ends, Heard, Item, Kind, MOST_MESSAGES, Message, OfDay, State};
 
 /// A report, or why there is none; nothing for a date or a datum.
-pub(super) fn decoded(item: Item, track: TrackId) -> Option<Decoded> {
+pub(super) fn decoded(item: Item, track: TrackId, against: &mut Names) -> Option<Decoded> {
     match item {
         Item::Dated(_) | Item::Datum(_) => None,
         Item::Unpaired(_) => Some(Err(Refused::AccuracyAlone)),
-        Item::Malformed(_) => Some(Err(Refused::ShortMessage)),
+        Item::Malformed(malformed) => {
+            against.count(malformed.reason);
+            Some(Err(Refused::ShortMessage))
+        }
         Item::Position(position) => {
             let Some(time) = position.time else { return Some(Err(Refused::Undated)) };
             let usable = position.absent.is_none();
+            position.absent.iter().for_each(|absent| against.count(&absent.stated));
             Some(Ok(Position {
                 lat_rad: position.lat_rad,
                 lon_rad: position.lon_rad,

@@ -414,17 +414,16 @@ def _unread(format_id: str) -> str:
     if format_id == "nmea":
         needs += ", dated by RMC or ZDA"
     elif format_id == "json":
-        needs = "; a line is an object with at least v (1), track, time_ns, est_lat_rad, est_lon_rad"
+        needs = "; a line is an object with at least v (1), track, time_ns, est_lat_rad, est_lon_rad; tables are read by navbound analyze"
     return f"nothing of the source is read as {format_id}{needs}; if it sends something else, --format states what"
 
 
 def _ended(session: Session, settings: Settings, *, json: bool) -> None:
     from navbound.live.sinks import tables  # noqa: PLC0415
-    from navbound.live.statements import unread  # noqa: PLC0415
+    from navbound.live.statements import against, unread  # noqa: PLC0415
 
     counters = session.counters()
-    if session.n_epochs:
-        tables.write(session.folder)
+    step_s = tables.usual_step_s(tables.write(session.folder)) if session.n_epochs else None
     refused, unusable = (
         ", ".join(f"{n:g} {name.removeprefix(of)}" for name, n in counters.items() if name.startswith(of) and n)
         for of in ("refused_", "unusable_")
@@ -443,8 +442,15 @@ def _ended(session: Session, settings: Settings, *, json: bool) -> None:
         sentence += f"; {settings.assumed}"
     if degraded := counters["n_degraded"]:
         sentence += f"; {counted(degraded, 'epoch is', 'epochs are')} degraded"
+    if keys := session.against():
+        sentence += f"; {against(keys)}"
     if keys := session.passed_over():
         sentence += f"; {unread(keys)}"
+    if step_s is not None and step_s > settings.stale_s:
+        sentence += (
+            f"; positions come every {step_s:g} s, and monitoring is lost after {settings.stale_s:g} s without one: "
+            f"--period-s {step_s:g} states their period, and --time-to-alert-s must leave room for it"
+        )
     if session.unfinished:
         sentence += f"; {session.unfinished}"
     # A session that was resumed counts the epochs of before among those that are not used.

@@ -38,9 +38,18 @@ def transitions(folder: Path) -> pl.DataFrame:
     return pl.DataFrame(records, schema=SCHEMA, infer_schema_length=None)
 
 
-def write(folder: Path) -> None:
-    """Both as Parquet beside the journals."""
-    for name, frame in (("epochs", epochs(folder)), ("events", transitions(folder))):
+def usual_step_s(judged: pl.DataFrame) -> float | None:
+    """The median of the steps in time of each track; None where no track has two times. [s]."""
+    steps = judged.select(pl.col("time_ns").unique().sort().diff().over("track", mapping_strategy="explode").alias("step_ns"))
+    median = steps["step_ns"].median()
+    return None if median is None else round(float(str(median)) * 1e-9, 3)
+
+
+def write(folder: Path) -> pl.DataFrame:
+    """Both as Parquet beside the journals; the epochs."""
+    judged = epochs(folder)
+    for name, frame in (("epochs", judged), ("events", transitions(folder))):
         partial = folder / f"{name}.parquet.partial"
         frame.write_parquet(partial, compression="zstd")
         partial.replace(folder / f"{name}.parquet")
+    return judged

@@ -135,6 +135,9 @@ class Hemispheres:
         if all(seen.are_letters(each) for each in AXES):
             return self._stands_behind(name) and not parts & _DIRECTION
         signed = {each for each in AXES if each in self._read and self._mapping.columns[each].hemisphere}
+        if axis in signed:
+            # Letters beside it sign it: loggers write a reason of recording with letters, too.
+            return False
         lettered = {each for each in AXES for other in self._seen.values() if other is not seen and other.are_letters(each)}
         return bool((signed | lettered) - {axis})
 

@@ -76,7 +76,7 @@ def by_form(names: list[str]) -> dict[str, str]:
     return {parted_form(name): name for name in reversed(names)} | {plain_form(name)[0]: name for name in reversed(names)}
 
 
-NO_UNIT = _ABOVE_ELLIPSOID | {"", "1", "-", "geodetic", "true", "gps", "utc", "1s", "1 sigma"}
+NO_UNIT = _ABOVE_ELLIPSOID | {"", "1", "-", "geodetic", "true", "gps", "utc", "1s", "1 sigma", "used/view"}
 """What stands in brackets behind a name and says nothing of its unit."""
 
 

@@ -49,6 +49,10 @@ _IN_FIELDS = ("m", "mps")
 """Kinds of quantities that loggers write with their unit in each field, `513.863 M` and `15.862 km/h`."""
 
 
+_USED = r"^(\d+) ?[(/] ?\d+\)?$"
+"""Satellites that are used, before those in view: loggers write `3(7)`."""
+
+
 def _with_units(text: pl.Series, units: Mapping[str, float], factor: float) -> pl.Series:
     """Numbers with a known unit behind each, in the unit of the column; null for anything else."""
     parts = text.str.to_lowercase().str.extract_groups(r"^([+-]?\d+(?:\.\d*)?(?:e[+-]?\d+)?)\s*([a-z][a-z/ ]*)$").struct.unnest()
@@ -59,11 +63,11 @@ def _with_units(text: pl.Series, units: Mapping[str, float], factor: float) -> p
 def lengths(column: pl.Series, factor: float) -> pl.Series:
     """Sizes of lengths of which an accuracy or a level is stated, in a unit of so many metres; null for anything else.
 
-    A field may state a unit of its own and a sign that it is a bound: `2.5 km`, `±2500 m`, `>= 10 NM`.
+    A field may state a unit of its own, a sign that it is a bound, and words in brackets: `2.5 km`, `±2500 m (95 %)`, `>= 10 NM`.
     """
     raw = column.cast(pl.Float64, strict=False)
     if column.dtype == pl.String:
-        text = column.str.strip_chars().str.replace(r"^(?:\+/-|[±<>=~≤≥≈\s])+", "")
+        text = column.str.strip_chars().str.replace(r"^(?:\+/-|[±<>=~≤≥≈\s])+", "").str.replace(r"\s*\([^()]*\)$", "")
         plain = text.cast(pl.Float64, strict=False)
         raw = pl.select(pl.coalesce(raw, plain, _with_units(text, UNITS["m"], factor))).to_series()
     return raw.abs().fill_nan(None)
@@ -78,6 +82,8 @@ def numbers(column: pl.Series, what: Column) -> tuple[pl.Series, pl.Series]:
         # Programs write a missing number as an empty field or as nan: an outage is no damage.
         text = text.set(text.str.contains(MISSING) | on_ground(column, what), None)
         raw = text.cast(pl.Float64, strict=False)
+        if q.name == "n_sv" and raw.null_count() > text.null_count():
+            raw = pl.select(pl.coalesce(raw, text.str.extract(_USED).cast(pl.Float64, strict=False))).to_series()
         if q.si in _IN_FIELDS and raw.null_count() > text.null_count():
             raw = pl.select(pl.coalesce(raw, _with_units(text, UNITS[q.si], factor))).to_series()
         empty = text.is_null()

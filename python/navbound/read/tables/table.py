@@ -158,12 +158,20 @@ def layout_of(path: Path, lines: pl.DataFrame, declared: Iterable[str] = ()) -> 
     if separator not in header and len(header.split()) > 2:
         what = f"no {_SEPARATOR_WORDS} in “{header[:60]}”: blanks separate no fields"
         raise FormatError(path, what + _lacking(header), int(lines[LINE][0]), "header")
+    header = _without_end(header, separator, lines[1 : 1 + _SAMPLE])
     layout = Layout(header, separator, _names(path, header, separator, declared))
     pairs = [name for name in layout.names if name.strip().lower() in _PAIRS]
     if len(pairs) != 1:
         return layout
     fields = rows_of(path, layout, lines[1 : 1 + _SAMPLE]).frame[pairs[0]].str.strip_chars()
     return replace(layout, pair=pairs[0]) if (fields.is_null() | (fields == "") | fields.str.contains(_PAIR)).all() else layout
+
+
+def _without_end(header: str, separator: str, rows: pl.DataFrame) -> str:
+    """A header that ends in a separator, without that where no row has one there: loggers write such headers."""
+    fields = rows["text"].str.replace_all(r'"[^"]*"', "").str.count_matches(separator, literal=True) + 1
+    ends = header.rstrip(" ").endswith(separator) and not rows.is_empty() and (fields == len(header.split(separator)) - 1).all()
+    return header.rstrip(" ").removesuffix(separator) if ends else header
 
 
 _PAIRS = ("position", "latlon", "lat_lon", "latlng", "lat_lng")

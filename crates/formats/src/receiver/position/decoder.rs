@@ -45,6 +45,8 @@ pub(super) enum Step {
     Part { key: i64, kind: u32 },
     /// The same, and several talkers write it.
     PartOfTalkers { key: i64, kind: u32 },
+    /// The same, and each of several talkers writes it once; a second one of the same talker is another epoch.
+    PartOfEach { key: i64, kind: u32 },
     /// It ends the epoch `key`.
     End { key: i64, kind: u32 },
     /// It is of the epoch `key` and holds a date, or none; whether it holds more.
@@ -102,6 +104,14 @@ impl Decoder {
             }
             Step::PartOfTalkers { key, kind } => {
                 let complete = self.epoch.put_again(key, Message { kind, record, body: body.to_vec() }, TALKERS);
+                self.emit(&complete, out);
+                self.end_at_last(out);
+            }
+            Step::PartOfEach { key, kind } => {
+                let talker = |body: &[u8]| body.get(..2).map(<[u8]>::to_vec);
+                let again = all_of_kind(&self.epoch.state.messages, kind).any(|each| talker(&each.body) == talker(body));
+                let most = if again { 1 } else { TALKERS };
+                let complete = self.epoch.put_again(key, Message { kind, record, body: body.to_vec() }, most);
                 self.emit(&complete, out);
                 self.end_at_last(out);
             }

@@ -27,8 +27,9 @@ pub(super) const TALKERS: usize = 4;
 /// twice (ours) \[1\].
 pub(super) const WITNESSES: usize = 16;
 
-/// Messages that an unfinished epoch holds at most: of RMC, GLL, GNS and PUBX what is kept, GST and GBS of each talker, and one of a few more kinds.
-pub const MOST_MESSAGES: usize = 4 * WITNESSES + 2 * TALKERS + 8;
+/// Messages that an unfinished epoch holds at most: of RMC, GLL, GNS and PUBX what is kept, GGA, GST and GBS of each talker, and one of a few more
+/// kinds.
+pub const MOST_MESSAGES: usize = 4 * WITNESSES + 3 * TALKERS + 8;
 
 /// The bits of [`State::newest`] that are the kind.
 const KIND: u32 = 0x00FF_FFFF;

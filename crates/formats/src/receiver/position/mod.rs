@@ -3,6 +3,7 @@
 //! [`Decoder`] takes frames one at a time and gives a [`Position`] when its epoch is complete; a stream and the reader of files ([`log::read`])
 //! use the same. Which words of a receiver mean a measured position stands in [`crate::measured`].
 
+mod accuracy;
 mod datum;
 mod decoder;
 mod epoch;

@@ -6,11 +6,12 @@
 //!
 //! Source: NMEA 0183 version 4 as receivers' manuals give it; standard. GGA has no date, and its height stands above the geoid.
 
+use super::accuracy::{circle, covariance, expected_errors, worst};
 use super::datum::Datum;
 use super::decoder::Step;
 use super::epoch::{Message, all_of_kind, of_kind};
 use super::sentence::{EARTH_M, SECOND_NS, Sentence, of_day, short_date, vtg_speed_mps};
-use super::{Absent, Fields, Note, OfDay, Position, Reason, datum, no_better, uncorrelated};
+use super::{Absent, Fields, Note, OfDay, Position, Reason, datum, no_better};
 use crate::measured::{GGA_QUALITIES, GSA_DIMENSIONS, LEAST_SATELLITES, NMEA_MODES};
 use crate::time::{Calendar, Scale, from_calendar, from_unix, to_calendar, to_unix};
 use navbound_core::quantity::{GpsTime, KNOT_MPS};
@@ -104,6 +105,9 @@ pub(super) fn step(body: &[u8], record: u64, gga: bool) -> Step {
     let Some(kind) = address.map(name).filter(|kind| [DTM, GGA, GST, GBS, GLL, GNS, GSA, RMC, VTG, ZDA].contains(kind)) else {
         return Step::Passed;
     };
+    if !body.is_ascii() {
+        return Step::Malformed("a sentence holds bytes that are no text");
+    }
     if kind == GSA {
         return if fields.number(2).is_some() { Step::Beside { kind, number: dimensions } } else { Step::Passed };
     }
@@ -136,7 +140,7 @@ pub(super) fn step(body: &[u8], record: u64, gga: bool) -> Step {
         GBS if !fields.sizes(&[2, 3, 4]) => Step::Malformed("an expected error of GBS is no size"),
         GST | GBS => Step::PartOfTalkers { key, kind },
         GNS => Step::Date { key, kind, dated: None, kept: true },
-        _ => Step::Part { key, kind },
+        _ => Step::PartOfEach { key, kind },
     }
 }
 
@@ -159,7 +163,11 @@ struct Own<'a> {
     sentence: Sentence<'a>,
 }
 
-impl Own<'_> {
+impl<'a> Own<'a> {
+    fn of(message: &'a Message) -> Self {
+        Self { kind: message.kind, sentence: Sentence(&message.body) }
+    }
+
     /// Where the latitude stands; the longitude stands two fields behind it.
     const fn at(&self) -> usize {
         if self.kind == GGA { 2 } else { 3 }
@@ -191,8 +199,10 @@ impl Own<'_> {
 pub(super) fn position(messages: &[Message], heard: &Heard) -> Option<Position> {
     let sentence = |kind| of_kind(messages, kind).map(|message| Sentence(&message.body));
     let kind = if heard.gga { GGA } else { RMC };
-    let Some(message) = of_kind(messages, kind) else { return without_gga(messages) };
-    let (record, own) = (message.record, Own { kind, sentence: Sentence(&message.body) });
+    // Of several talkers' GGA one that measures is enough.
+    let measured = || all_of_kind(messages, GGA).find(|message| Own::of(message).measured());
+    let Some(message) = measured().or_else(|| of_kind(messages, kind)) else { return without_gga(messages) };
+    let (record, own) = (message.record, Own::of(message));
     let (lat_rad, lon_rad) = (own.sentence.angle(own.at(), [b"N", b"S"]), own.sentence.angle(own.at() + 2, [b"E", b"W"]));
     let (altitude, separation) = (own.number(9), own.number(11));
     let all = |kind| all_of_kind(messages, kind).map(|message| Sentence(&message.body));
@@ -269,12 +279,17 @@ fn contradiction(own: &Own<'_>, messages: &[Message], other_datum: Option<&str>)
         ("GLL", GLL, Some(6), 7, 1, ABSENT),
         ("GNS", GNS, None, 6, 2, 13),
         ("PUBX", PUBX, None, ABSENT, 3, ABSENT),
+        ("GGA", GGA, None, ABSENT, 2, ABSENT),
     ];
     // GNS has a letter for each constellation, of which one that is used is enough, and so has each of several GNS.
     let measured = |mode: &str| mode.bytes().any(|letter| NMEA_MODES.contains(&letter));
     let by_gns =
         all_of_kind(messages, GNS).any(|gns| Sentence(&gns.body).get(6).is_some_and(|mode| measured(&String::from_utf8_lossy(mode))));
-    let mut each = beside.into_iter().flat_map(|of| all_of_kind(messages, of.1).map(move |message| (of, Sentence(&message.body))));
+    let mut each = beside
+        .into_iter()
+        .flat_map(|of| all_of_kind(messages, of.1).map(move |message| (of, message)))
+        .filter(|(_, message)| message.kind != GGA || Own::of(message).measured())
+        .map(|(of, message)| (of, Sentence(&message.body)));
     let stated = each.find_map(|((name, _, status, mode, at, navigational), other)| {
         let text = |at: usize| other.get(at).filter(|text| !text.is_empty()).map(String::from_utf8_lossy);
         if let Some(status) = status.and_then(text).filter(|status| status != "A") {
@@ -313,11 +328,6 @@ fn biased_range(gbs: &Sentence<'_>) -> Option<String> {
     let (satellite, bias_m, sigma_m) = (gbs.get(5).filter(|text| !text.is_empty())?, gbs.number(7)?, gbs.number(8).unwrap_or(0.0));
     let satellite = String::from_utf8_lossy(satellite);
     (bias_m.abs() > BIAS * sigma_m).then(|| format!("GBS: satellite {satellite} wrong by {bias_m} m"))
-}
-
-/// Of several accuracies of one epoch the worst.
-fn worst(accuracies: impl Iterator<Item = [f64; 6]>) -> Option<[f64; 6]> {
-    accuracies.reduce(|one, other| no_better(one, Some(other)).0)
 }
 
 /// Distance within which two sentences of one time give one place: receivers smooth and extrapolate them differently. Provenance: ours \[m\].
@@ -372,35 +382,4 @@ fn gps_time(Dated { year, month, day, of_day: OfDay(dated_ns) }: Dated, of_day_n
     let noon = Calendar { hour: 12, minute: 0, nanoseconds: 0, ..clock };
     let date = to_calendar(from_unix(to_unix(from_calendar(noon, Scale::Utc)?) + days * 2 * HALF_DAY_NS))?;
     from_calendar(Calendar { year: date.year, month: date.month, day: date.day, ..clock }, Scale::Utc)
-}
-
-/// Largest ratio of the ellipse's axis to the deviations: a 95 % axis of two equal deviations is 1.73 of their root sum (standard), with a margin
-/// for rounding (ours) \[1\].
-const ELLIPSE: f64 = 3.0;
-
-/// From GST: deviations along the axes, and the turn of the ellipse. Its axes are scaled to the deviations: the standard calls them standard
-/// deviations, some makers write 95 % axes.
-fn covariance(gst: &Sentence<'_>) -> Option<[f64; 6]> {
-    let [lat, lon, alt] = [gst.number(6)?, gst.number(7)?, gst.number(8)?];
-    let [ee, _, nn, _, _, uu] = uncorrelated(lon, lat, alt);
-    // An ellipse beyond any scale of the deviations is another statement, and the worse one.
-    let scale = gst.number(3).filter(|major| *major > ELLIPSE * libm::sqrt(ee + nn));
-    let [ee, nn, uu] = scale.map_or([ee, nn, uu], |major| [ee.max(major * major), nn.max(major * major), uu]);
-    let en = gst.number(3).zip(gst.number(4)).zip(gst.number(5)).map_or(0.0, |((major, minor), orient)| {
-        let (sum, turn) = (major * major + minor * minor, orient.to_radians());
-        if sum > 0.0 { (ee + nn) * (major * major - minor * minor) / sum * libm::sin(turn) * libm::cos(turn) } else { 0.0 }
-    });
-    Some([ee, en, nn, 0.0, 0.0, uu])
-}
-
-/// From GBS: expected errors of latitude, longitude, altitude.
-fn expected_errors(gbs: &Sentence<'_>) -> Option<[f64; 6]> {
-    Some(uncorrelated(gbs.number(3)?, gbs.number(2)?, gbs.number(4)?))
-}
-
-/// From `PUBX,00`: hAcc, the root of both horizontal variances together, and vAcc.
-fn circle(pubx: &Sentence<'_>) -> Option<[f64; 6]> {
-    let (h_m, v_m) = (pubx.number(9)?, pubx.number(10)?);
-    let axis_m = h_m * core::f64::consts::FRAC_1_SQRT_2;
-    Some(uncorrelated(axis_m, axis_m, v_m))
 }

@@ -28,10 +28,19 @@ pub(super) fn position(bytes: &[u8], kind: Kind) -> bool {
         // Blocks 4006 and 4007, the revision in the upper three bits.
         Kind::Sbf => behind(bytes, b"$@").any(|rest| matches!(rest, [_, _, 0xa6 | 0xa7, high, ..] if high & 0x1f == 0x0f)),
         Kind::Novatel => [b"\xaa\x44\x12\x1c\x2a\x00".as_slice(), b"#BESTPOSA,"].iter().any(|sign| memmem::find(bytes, sign).is_some()),
-        Kind::Nmea => behind(bytes, b"$").any(|rest| {
-            rest.first_chunk::<2>().is_some_and(|talker| talker.iter().all(u8::is_ascii_uppercase)) && rest[2..].starts_with(b"GGA,")
-        }),
+        Kind::Nmea => sentence(bytes, b"GGA,"),
     }
+}
+
+/// Whether a sentence of NMEA that may state a position begins anywhere.
+pub fn states_positions(bytes: &[u8]) -> bool {
+    sentence(bytes, b"GGA,") || sentence(bytes, b"RMC,")
+}
+
+/// Whether a sentence of this name begins anywhere, of whatever talker.
+fn sentence(bytes: &[u8], name: &[u8]) -> bool {
+    let of_talker = |rest: &[u8]| rest.first_chunk::<2>().is_some_and(|talker| talker.iter().all(u8::is_ascii_uppercase));
+    behind(bytes, b"$").any(|rest| of_talker(rest) && rest[2..].starts_with(name))
 }
 
 /// Whether any message begins.

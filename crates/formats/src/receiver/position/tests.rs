@@ -143,6 +143,42 @@ fn two_positions_of_one_time_are_two() {
     assert_eq!(log.positions.len(), 2);
 }
 
+/// A receiver of two systems writes GPGGA and GLGGA.
+#[test]
+fn the_positions_of_two_talkers_at_one_time_are_one() {
+    let gga = |talker: &str, lat: &str, quality: u8| format!("{talker}GGA,120000.00,{lat},N,00230.0,E,{quality},08,1.0,100.0,M,47.0,M,,");
+    for (ends, mut epochs) in [(Ends::WithNext, 0), (Ends::WithLast, 0)] {
+        let mut decoder = Decoder::new(Kind::Nmea, ends);
+        for second in 0..4 {
+            for body in [ZDA, &gga("GP", "4900.0", 1), &gga("GL", "4900.0", 1), GST] {
+                let mut out = Vec::new();
+                decoder.take(&Frame::Nmea(body.replace("120000", &format!("12000{second}")).as_bytes()), 1, &mut out);
+                assert!(positions(&out).iter().all(|p| p.covariance_m2.is_some() && p.absent.is_none()), "{out:?}");
+                epochs += positions(&out).len();
+            }
+        }
+        assert_eq!(epochs, if ends == Ends::WithNext { 3 } else { 4 });
+    }
+    for (first, second, says) in [
+        (gga("GP", "4900.0", 1), gga("GL", "4901.2", 1), Some("position of GGA 2224 m away")),
+        (gga("GP", "4900.0", 1), gga("GL", "4901.2", 0), None),
+        (gga("GP", "4901.2", 0), gga("GL", "4900.0", 1), None),
+        (gga("GP", "4900.0", 0), gga("GL", "4900.0", 0), Some("quality 0, latitude 4900.0")),
+    ] {
+        let stated = reasons(&[ZDA, &first, &second, GST]);
+        assert_eq!(stated.first().map(|(_, words)| words.as_str()), says, "{first} {second}");
+        assert!(stated.len() < 2);
+    }
+}
+
+#[test]
+fn bytes_that_are_no_text_make_no_sentence() {
+    let rmc = b"GPRMC,120000.00,A,4900.0\xb0,N,00230.0,E,1.0,80.0,221126,,,A";
+    let mut out = Vec::new();
+    Decoder::new(Kind::Nmea, Ends::WithNext).take(&Frame::Nmea(rmc), 7, &mut out);
+    assert!(matches!(out.as_slice(), [Item::Malformed(malformed)] if malformed.record == 7), "{out:?}");
+}
+
 #[test]
 fn the_deviations_of_another_time_are_not_borrowed() {
     let gga = "GPGGA,120000.00,4900.0,N,00230.0,E,1,08,1.0,100.0,M,47.0,M,,";
