@@ -223,11 +223,14 @@ TIME_NAMES: dict[str, str] = {
 """Known names of time columns to the way they are written."""
 
 WEEK = {"gps_week": "a GPS week", "gps_tow_s": "a time of week"}
-DAY = {"utc_date": "a date", "utc_time_of_day": "a time of day"}
-"""Two columns that make a time together, either way; each is declared by its own key."""
+DAY = {"utc_date": "a date", "utc_time_of_day": "a time of day", "utc_offset": "an offset from UTC"}
+"""Two columns that make a time together, either way, and by how much both are ahead of UTC; each is declared by its own key."""
 
 DATE_NAMES = ("utc_date", "date_utc", "date", "gmt_date", "date_gmt")
 """Known names of a date whose time of day stands in another column."""
+
+LOCAL_NAMES = (("lcl_date", "local_date"), ("lcl_time", "local_time"), ("utcofst", "utc_ofst", "utc_offset"))
+"""Known names of a local date, of its time of day, and of their offset from UTC. Provenance: from headers of Garmin's flight decks."""
 
 DATE_ORDERS = ("ymd", "dmy", "mdy")
 """Orders of year, month and day in a date of numbers."""
@@ -255,6 +258,18 @@ some of which mean something else elsewhere."""
 
 OPENSKY_VELOCITY: dict[str, tuple[str, str]] = {"track": ("icao24", "text"), "ground_speed_mps": ("velocity", "mps")}
 """Some columns of the same, under its own names: who flies, and its speed."""
+
+GARMIN = frozenset({"Lcl Date", "Lcl Time", "UTCOfst", "Latitude", "Longitude"})
+GARMIN_COLUMNS: dict[str, tuple[str, str]] = {
+    "est_h_m": ("AltGPS", "ft"),
+    "ground_speed_mps": ("GndSpd", "kt"),
+    "hpl_m": ("HPLwas", "m"),
+    "vpl_m": ("VPLwas", "m"),
+}
+GARMIN_TRACK = ("TRK", "MagVar")
+"""Logs of Garmin's flight decks (G1000 and its kin), and what columns that one of them may lack hold, in the units of their second line.
+The levels are those of SBAS, which stand beside a differential fix alone. The course is magnetic, the variation positive to the east.
+Provenance: inferred from headers and from two flights, of which one has a variation of 3.3 degrees and moves 3.4 degrees off its course."""
 
 DUMP1090_SPEED, DUMP1090 = ("speed", "kt"), frozenset({"hex", "seen_pos", "speed"})
 """The speed of dump1090's aircraft, and the names by which they are known. Provenance: standard, from knowledge of the format."""

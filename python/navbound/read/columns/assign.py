@@ -22,6 +22,9 @@ from navbound.read.quantities import (
     DUMP1090,
     DUMP1090_SPEED,
     FLIGHTRADAR24,
+    GARMIN,
+    GARMIN_COLUMNS,
+    GARMIN_TRACK,
     LEVEL_QUANTITIES,
     OPENSKY_STATES,
     OPENSKY_VELOCITY,
@@ -118,7 +121,7 @@ def assign(
                 taken.add(assigned.name)
     columns |= _of_phone(columns, names)
     columns |= hemispheres.signed(columns, letters, names, stated_sides)
-    taken |= {c.hemisphere for c in columns.values() if c.hemisphere}
+    taken |= {name for c in columns.values() for name in (c.hemisphere, c.variation) if name}
     times = of_times(times, [n for n in names if n not in taken], of_day, path)
     taken |= {c.name for c in times}
     require(columns, times, names, path, needs)
@@ -203,7 +206,16 @@ def _of_layouts(names: list[str]) -> dict[str, Column]:
     ]
     if set(names) >= DUMP1090 and "gs" not in names:
         layouts.append({"ground_speed_mps": DUMP1090_SPEED})
-    return {quantity: Column(quantity, name, unit) for layout in layouts for quantity, (name, unit) in layout.items()}
+    if set(names) >= GARMIN:
+        layouts.append({quantity: column for quantity, column in GARMIN_COLUMNS.items() if column[0] in names})
+    columns = {
+        quantity: Column(quantity, name, unit, unit_stated=set(names) >= GARMIN)
+        for layout in layouts
+        for quantity, (name, unit) in layout.items()
+    }
+    if set(names) >= GARMIN.union(GARMIN_TRACK):
+        columns["ground_track_rad"] = Column("ground_track_rad", GARMIN_TRACK[0], "deg", unit_stated=True, variation=GARMIN_TRACK[1])
+    return columns
 
 
 _COMPARED = ("est_lat_rad", "est_lon_rad", "ground_speed_mps", "nac_p", "nic", "nuc_p", "pic")

@@ -31,6 +31,8 @@ class Column:
     """Of a date of numbers, as the caller states it."""
     hemisphere: str = ""
     """Of a coordinate without a sign, the column whose letters say on which side of the equator or of Greenwich it is."""
+    variation: str = ""
+    """Of a magnetic direction, the column whose angles in degrees make it a true one, positive to the east."""
     because: str = ""
     """Why it is read in this unit, where names beside it say so; the rest of a sentence."""
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from navbound.errors import FormatError
 from navbound.read.columns.column import Column
 from navbound.read.columns.naming import by_form, declare, plain_form
-from navbound.read.quantities import DATE_NAMES, DAY, POSITION_TIME_NAMES, TIME_NAMES, WEEK
+from navbound.read.quantities import DATE_NAMES, DAY, LOCAL_NAMES, POSITION_TIME_NAMES, TIME_NAMES, WEEK
 
 if TYPE_CHECKING:
     from collections.abc import Container
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def of_times(declared: list[Column], free: list[str], of_day: Container[str], path: Path) -> list[Column]:
     """The columns that state times together: those that are declared or known by name, and what they are not whole without."""
-    times = declared or known_times(free, of_day)
+    times = declared or known_times(free, of_day) or _local(free, of_day)
     times = _whole_week(times, _without(free, times), path)
     return _whole_day(times, _without(free, times), of_day, path)
 
@@ -29,6 +29,18 @@ def _without(names: list[str], columns: list[Column]) -> list[str]:
 def known_times(names: list[str], of_day: Container[str] = ()) -> list[Column]:
     """A column of a known name; one with dates goes before one of times of day, which needs another one for them."""
     return _dated([n for n in names if n not in of_day]) or _dated([n for n in names if n in of_day])
+
+
+def _local(names: list[str], of_day: Container[str]) -> list[Column]:
+    """A local date with its time of day and their offset from UTC; nothing where one of them is not there."""
+    plain = by_form(names)
+    columns = [
+        Column("time", plain[alias], unit)
+        for unit, aliases in zip(DAY, LOCAL_NAMES, strict=True)
+        for alias in [next((each for each in aliases if each in plain), "")]
+        if alias
+    ]
+    return columns if len(columns) == len(DAY) and columns[1].name in of_day else []
 
 
 def _dated(names: list[str]) -> list[Column]:
@@ -64,7 +76,7 @@ def _whole_week(times: list[Column], names: list[str], path: Path) -> list[Colum
 
 
 def _whole_day(times: list[Column], names: list[str], of_day: Container[str], path: Path) -> list[Column]:
-    """A date and its time of day, in this order, where a time is one of day alone or either of both was declared.
+    """A date and its time of day, in this order, and their offset from UTC where one is declared or known.
 
     Raises
     ------
@@ -91,7 +103,7 @@ def _whole_day(times: list[Column], names: list[str], of_day: Container[str], pa
             date, how = both["utc_date"].name, declare("utc_time_of_day=COLUMN")
             raise FormatError(path, f"“{date}” is {DAY['utc_date']}, and no column is {DAY['utc_time_of_day']}; {how}", 1, "time")
         both["utc_time_of_day"] = Column("time", name, "utc_time_of_day")
-    return [both["utc_date"], both["utc_time_of_day"]]
+    return [both[unit] for unit in DAY if unit in both]
 
 
 def position_time(unused: list[str]) -> Column | None:

@@ -64,10 +64,12 @@ _NO = words(
     "0 -1 false f no n none v void invalid not_valid bad unusable fail failed lost off unhealthy unavailable not_available unreliable"
 )
 _YES = words("1 true t yes y a valid ok good healthy on active available usable reliable sps dgps pps")
-_NO_FIX = words("0 -1 false no none no_fix nofix invalid not_valid lost v void n time time_only dr dead_reckoning estimated")
+_NO_FIX = words(
+    "0 -1 false no none no_fix nofix nosoln no_solution invalid not_valid lost v void n time time_only dr dead_reckoning estimated"
+)
 _FIX = words(
-    "2 3 4 5 6 9 true yes fix valid 2d 3d 2d_fix 3d_fix gps gnss dgps dgnss rtk rtk_fixed rtk_float fixed float sps pps ppp sbas single "
-    "autonomous differential a d r f p"
+    "2 3 4 5 6 9 true yes fix valid 2d 3d 2ddiff 3ddiff 2d_fix 3d_fix gps gnss dgps dgnss rtk rtk_fixed rtk_float fixed float sps pps ppp "
+    "sbas single autonomous differential a d r f p"
 )
 NO_ALERT = words(
     "normal none no ok off false 0 nan null n_a na good clear cleared pass passed nominal healthy valid available n safe in_use"

@@ -129,6 +129,13 @@ def in_hemisphere(what: Column, values: pl.Series, reason: pl.Series, letters: p
     return pl.select(known.alias("value")).to_series(), pl.select(why.alias("reason")).to_series()
 
 
+def of_true_north(values: pl.Series, reason: pl.Series, variation: pl.Series) -> tuple[pl.Series, pl.Series]:
+    """Magnetic directions as true ones by the variation in degrees; a row without one has none."""
+    added = variation.str.strip_chars().cast(pl.Float64, strict=False) if variation.dtype == pl.String else variation.cast(pl.Float64)
+    turned = (values + added.radians()) % math.tau
+    return turned, pl.select(pl.when(turned.is_null() & reason.is_null()).then(pl.lit("empty")).otherwise(reason)).to_series()
+
+
 def in_one_text(column: pl.Series) -> pl.Series:
     """A column as texts: a list as its words, bytes as their characters."""
     if column.dtype == pl.List(pl.String):

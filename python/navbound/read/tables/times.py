@@ -61,7 +61,7 @@ class TimeFacts:
         """Facts of all rows, or of some."""
         first, unit = frame[columns[0].name], columns[0].unit
         if unit == "utc_date":
-            zoned = dates.is_zoned(frame[columns[1].name])
+            zoned = len(columns) > _WITHOUT_OFFSET or dates.is_zoned(frame[columns[1].name])
             return cls(np.empty(0), 0, zoned=zoned, early=False, orders=dates.Orders.of(first))
         if unit in {"gps_week", "gps_tow_s"}:
             week = _plain_numbers(frame[next(c.name for c in columns if c.unit == "gps_week")])
@@ -89,18 +89,28 @@ class TimeFacts:
         return cls(numbers, sum(f.n_text for f in facts), zoned, all(f.early for f in facts), orders)
 
 
+_WITHOUT_OFFSET = 2
+"""Columns of a date and its time of day. [1]"""
+
+
+def _clock(frame: pl.DataFrame, columns: list[Column]) -> pl.Series:
+    """Times of day, with their offset from UTC where a column of it stands beside them."""
+    _, clock, *offset = columns
+    return dates.with_offset(frame[clock.name], frame[offset[0].name]) if offset else frame[clock.name]
+
+
 def shown(frame: pl.DataFrame, columns: list[Column]) -> tuple[str, pl.Series]:
     """What a refusal of a row names: the column, and what stands in it; a date and its time of day are named together."""
     first = frame[columns[0].name]
     if columns[0].unit != "utc_date":
         return columns[0].name, first
-    return " and ".join(column.name for column in columns), dates.as_written(first, frame[columns[1].name])
+    return " and ".join(column.name for column in columns), dates.as_written(first, _clock(frame, columns))
 
 
 def units(columns: list[Column], understood: str) -> list[str]:
     """``column:unit`` of the columns used, as they were understood."""
     if columns[0].unit == "utc_date":
-        return [f"{columns[0].name}:{understood}", f"{columns[1].name}:{columns[1].unit}"]
+        return [f"{columns[0].name}:{understood}", *(f"{column.name}:{column.unit}" for column in columns[1:])]
     if columns[0].unit.startswith("utc"):
         return [f"{columns[0].name}:{understood}"]
     return [f"{c.name}:{c.unit}" for c in columns]
@@ -166,7 +176,7 @@ def converted(frame: pl.DataFrame, columns: list[Column], unit: str) -> tuple[pl
     """GPS time of every row in a unit that was understood, and why a row has none."""
     first = frame[columns[0].name]
     if columns[0].unit == "utc_date":
-        times = frame[columns[1].name]
+        times = _clock(frame, columns)
         text = dates.joined(first, times, unit)
         ns, first = _with_leap_seconds(text, _iso(text)), dates.as_written(first, times)
     elif first.dtype in (pl.Datetime, pl.Date):

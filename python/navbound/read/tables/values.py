@@ -29,6 +29,7 @@ from navbound.read.tables.cells import (
     lengths,
     no_field,
     numbers,
+    of_true_north,
     on_ground,
     within_objects,
     words_of_ground,
@@ -160,6 +161,8 @@ class Values:
         if column.quantity == "ground_speed_mps":
             raw = self._no_speeds.without(column.name, frame, raw, UNITS["mps"][column.unit], (self.tally, SPEEDS))
         values, reason = numbers(raw, column)
+        if column.variation:
+            return of_true_north(values, reason, frame[column.variation])
         return in_hemisphere(column, values, reason, frame[column.hemisphere]) if column.hemisphere else (values, reason)
 
     def _with_speed(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
