@@ -13,7 +13,7 @@ import navbound
 from navbound import FormatError, InputError, scale, scenario
 from navbound.records.material import Material
 from navbound.run import campaign, flight, fly
-from navbound.run.ground import flight as taxi
+from navbound.run import ground as taxi
 from navbound.scenario import Scenario
 from navbound.studies.anp_comparison import study as anp_comparison
 from navbound.studies.tse_coverage import study as tse_coverage

@@ -14,11 +14,11 @@ import pytest
 
 import navbound
 from navbound import FormatError, InputError, gbas, gnss, scenario
+from navbound.ground.motion import move
+from navbound.ground.navigation import Navigator, moved_by
+from navbound.run import ground as flown
 from navbound.run.directory import Run
 from navbound.run.fly import material
-from navbound.run.ground import flight as flown
-from navbound.run.ground.motion import move
-from navbound.run.ground.navigation import Navigator, moved_by
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

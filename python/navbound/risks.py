@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from navbound import _core
 from navbound.errors import InputError
 
@@ -18,3 +20,8 @@ def checked_risk(argument: str, value: float) -> float:
         return _core.checked_risk(float(value))
     except InputError as e:
         raise InputError(argument, value, e.unit, e.domain) from None
+
+
+def at_least_once(risk: float, n_times: float) -> float:
+    """Probability that what has this risk each time, below one, happens in so many independent times; small ones keep their digits."""
+    return -math.expm1(n_times * math.log1p(-risk))

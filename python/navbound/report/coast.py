@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from navbound.evaluation import sizes
+from navbound.read.checks.places import east_north_m
 from navbound.read.runways import near
 from navbound.records.run import Waypoint
 
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
 
     from navbound.records.performance import GridPoint
 
-REACH_RAD = 6000.0 / 6.371e6
+REACH_M = 6000.0
 """An airport this near to the end of a track is where it lies. Provenance: ours."""
 _CELL_DEG = 5.0
 """Of the ionospheric grid. [deg]"""
@@ -27,7 +29,7 @@ MOST_AIRPORTS = 40
 
 
 def airports(ends: NDArray[np.float64], known: Sequence[Waypoint]) -> list[Waypoint]:
-    """Airports within `REACH_RAD` of the ends of tracks, (n, 2) latitude and longitude, that no point of the map names."""
+    """Airports within `REACH_M` of the ends of tracks, (n, 2) latitude and longitude, that no point of the map names."""
     if not len(ends):
         return []
     named = {w.name.partition("/")[0] for w in known}
@@ -35,8 +37,8 @@ def airports(ends: NDArray[np.float64], known: Sequence[Waypoint]) -> list[Waypo
     for runway in near(ends[:, 0], ends[:, 1]):
         name = runway.name.partition("/")[0]
         lat, lon = (runway.lat_rad + runway.far_lat_rad) / 2, (runway.lon_rad + runway.far_lon_rad) / 2
-        north, east = ends[:, 0] - lat, (ends[:, 1] - lon) * np.cos(lat)
-        if name not in named and float(np.min(np.hypot(north, east))) <= REACH_RAD:
+        apart_m = sizes.horizontal(east_north_m(np.full_like(ends, (lat, lon)), ends))
+        if name not in named and float(apart_m.min()) <= REACH_M:
             places.setdefault(name, Waypoint(name=name, lat_rad=lat, lon_rad=lon, kind="runway"))
     return list(places.values())[:MOST_AIRPORTS]
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from jinja2 import Environment, StrictUndefined
 
-from navbound.units import METRES_PER_NM
+from navbound.units import METRES_PER_NM, shortening
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -141,7 +141,7 @@ def _route(record: ExpectedFlight, seconds: pl.DataFrame) -> dict[str, Any]:
     lat, lon = seconds["lat_rad"].to_list(), seconds["lon_rad"].to_list()
     # Longitudes counted from the first, so that 180 degrees is no edge.
     south, north = min(lat), max(lat)
-    shortened = math.cos((south + north) / 2)
+    shortened = shortening((south + north) / 2)
     east = [math.remainder(each - lon[0], math.tau) * shortened for each in lon]
     west = min(east)
     wide, tall = max(max(east) - west, 1e-6), max(north - south, 1e-6)

@@ -18,6 +18,7 @@ from navbound.rnp.usual import breaks
 from navbound.storage.tables import pieces
 from navbound.table import lookup
 from navbound.time import GPS_EPOCH_UNIX_NS, utc_offset_s
+from navbound.units import shortening
 from navbound.words.plurals import counted
 
 if TYPE_CHECKING:
@@ -263,7 +264,7 @@ def _region(epochs: Table, waypoints: list[Waypoint]) -> tuple[float, float, flo
     west, east = float(lon_deg.min()), float(lon_deg.max())
     room = max(2.0, 0.6 * max(north - south, east - west))
     # The map is wider than it is high.
-    wide = max(room, north - south) / max(0.2, math.cos(math.radians(middle)))
+    wide = max(room, north - south) / max(0.2, shortening(math.radians(middle)))
     return (south - room, west - wide, north + room, east + wide)
 
 

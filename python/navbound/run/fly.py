@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from navbound.records.material import Material
-from navbound.run import flight
+from navbound.run import flight, ground
 from navbound.run.campaign import Flown, fly_all, scenario_file, seed_in_force, track_name
-from navbound.run.ground import flight as ground
 from navbound.scenario import Scenario, Taxi, find, read
 
 if TYPE_CHECKING:

@@ -12,6 +12,8 @@ import polars as pl
 
 from navbound import gnss, sbas, status
 from navbound.errors import ConflictError, FormatError, InputError
+from navbound.evaluation import sizes
+from navbound.gnss.sight_columns import towards
 from navbound.kpi.tables import with_larger_error
 from navbound.read.checks.places import header_against
 from navbound.read.checks.refusals import of_navigation, of_observations, rejections, require_most_epochs, skipped_words
@@ -194,7 +196,7 @@ def _with_own_truth(epochs: pl.DataFrame) -> tuple[pl.DataFrame, list[str]]:
     compared, doubts = with_error(epochs)
     if not errors:
         return compared, [f"Truth: from the file itself. {doubts.words}".rstrip()]
-    own = compared.select(h=(pl.col("nse_e_m") ** 2 + pl.col("nse_n_m") ** 2).sqrt(), u="nse_u_m")
+    own = compared.select(h=sizes.horizontal_of_columns(), u="nse_u_m")
     epochs = with_larger_error(epochs.with_columns(_h=own["h"], _u=own["u"]), pl.col("_h"), pl.col("_u")).drop("_h", "_u")
     of_both = f"the larger of what the table states ({', '.join(errors)}) and of its true positions"
     return epochs, [f"Truth: from the file itself; the error of an epoch is {of_both}. {doubts.words}".rstrip()]
@@ -334,9 +336,7 @@ def _range_errors(ranges: pl.DataFrame, epochs: pl.DataFrame) -> pl.DataFrame:
     if "nse_e_m" not in epochs.columns:
         raise ConflictError("stanford_esa", needs=("truth",), because="the error of a subset is that against the true position")
     joined = ranges.join(epochs.select("time_ns", "nse_e_m", "nse_n_m", "nse_u_m"), on="time_ns", maintain_order="left")
-    east, north = pl.col("el_rad").cos() * pl.col("az_rad").sin(), pl.col("el_rad").cos() * pl.col("az_rad").cos()
-    moved = east * pl.col("nse_e_m") + north * pl.col("nse_n_m") + pl.col("el_rad").sin() * pl.col("nse_u_m")
-    return joined.with_columns(range_error_m=pl.col("residual_m") + moved).drop_nulls("range_error_m")
+    return joined.with_columns(range_error_m=pl.col("residual_m") + towards("nse_e_m", "nse_n_m", "nse_u_m")).drop_nulls("range_error_m")
 
 
 def uniform(epochs: pl.DataFrame) -> pl.DataFrame:
@@ -346,7 +346,7 @@ def uniform(epochs: pl.DataFrame) -> pl.DataFrame:
         (pl.col(name) if name in epochs.columns else pl.lit("ok" if name == "status" else None)).cast(kind).alias(name)
         for name, kind in SCHEMA.items()
     )
-    horizontal = (pl.col("nse_e_m") ** 2 + pl.col("nse_n_m") ** 2).sqrt()
+    horizontal = sizes.horizontal_of_columns()
     # Of a size and components of one error the larger counts; one component alone is no error of both axes.
     parts = pl.when(horizontal.is_null() & pl.col("hpe_m").is_not_null()).then(pl.max_horizontal(pl.col("nse_e_m", "nse_n_m").abs()))
     return filled.with_columns(

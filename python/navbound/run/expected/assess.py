@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from navbound import __version__, anp, evaluation
 from navbound.errors import FormatError, InputError
+from navbound.evaluation import sizes
 from navbound.records.prediction import Agreement, Assessment, ExpectedFlight
 from navbound.run import directory
 from navbound.run.expected.flight import EPOCHS, RECORD
@@ -172,7 +173,7 @@ def _against_truth(rows: pl.DataFrame, circle: Floats) -> dict[str, float | None
         return None
     error, circle, tracks = error[there], circle[there], rows["track"].to_numpy()[there]
     covariance = _covariance(rows, "expected")[there]
-    outside = np.hypot(error[:, 0], error[:, 1]) > circle
+    outside = sizes.horizontal(error) > circle
     whole = evaluation.nees(error, covariance, tracks)
     _, first = np.unique(tracks, return_index=True)
     # The limits depend on the number of independent epochs alone: those of one epoch a flight are those of the flights.

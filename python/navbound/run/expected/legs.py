@@ -10,6 +10,7 @@ import numpy as np
 from navbound import dme, rnp
 from navbound.errors import InputError
 from navbound.records.prediction import ExpectedLeg, LevelHole
+from navbound.risks import at_least_once
 from navbound.run.expected.table import parts
 
 if TYPE_CHECKING:
@@ -91,7 +92,7 @@ def _exposed(setup: Setup, risk: Floats) -> float:
         return 1.0
     if hour >= 1.0:
         return 1.0
-    return min(1.0, worst - math.expm1(len(risk) / 3600.0 * math.log1p(-hour)))
+    return min(1.0, worst + at_least_once(hour, len(risk) / 3600.0))
 
 
 def _no_stations(setup: Setup, part: pl.DataFrame) -> bool:

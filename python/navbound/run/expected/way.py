@@ -10,9 +10,10 @@ import numpy as np
 
 from navbound import path, procedures
 from navbound.errors import FormatError, NavboundError
+from navbound.path import lengths
 from navbound.procedures.legs import STATES
 from navbound.procedures.names import parts
-from navbound.units import EARTH_RADIUS_M, METRES_PER_NM
+from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -70,8 +71,7 @@ class Way:
         """Distance from the last point. [m]."""
         last = self.waypoints[-1]
         from_rad, to_rad = (last["lat_rad"], last["lon_rad"]), (lat_rad, lon_rad)
-        chord = np.linalg.norm(_unit(*to_rad) - _unit(*from_rad))
-        return float(chord) * EARTH_RADIUS_M
+        return lengths.chord_m(from_rad, to_rad)
 
     @property
     def last(self) -> str:
@@ -95,10 +95,6 @@ class Way:
 
 def _same(a: tuple[str, float], b: tuple[str, float]) -> bool:
     return a[0] == b[0] and (a[1] == b[1] or (math.isnan(a[1]) and math.isnan(b[1])))
-
-
-def _unit(lat_rad: float, lon_rad: float) -> np.ndarray:
-    return np.array([math.cos(lat_rad) * math.cos(lon_rad), math.cos(lat_rad) * math.sin(lon_rad), math.sin(lat_rad)])
 
 
 def way(file: str | Path, folder: Path, named: list[PlannedProcedure], route: list[Waypoint], requirements: list[Phase] | None) -> Way:
@@ -232,7 +228,7 @@ def _leg(whole: Way, procedure: Procedure, k: int, leg: Leg) -> None:
         step_m = leg.length_m / n
         at = procedure.core.at(k, np.arange(n, dtype=np.float64) * step_m)
         # The tangents of two points of an arc meet at this distance from each.
-        tangent_m = radius_m * math.tan(0.5 * turn / n)
+        tangent_m = lengths.tangent_m(radius_m, turn / n)
         for j in range(n):
             corner = path.from_azimuth(float(at["lat_rad"][j]), float(at["lon_rad"][j]), float(at["course_rad"][j])).at(tangent_m)
             whole.add(f"{fix} arc {j + 1}", (float(corner.lat_rad), float(corner.lon_rad)), title, requirement, radius_m * (1 - LOOSE))

@@ -10,6 +10,7 @@ import polars as pl
 
 from navbound import gnss
 from navbound.errors import FormatError
+from navbound.evaluation import sizes
 from navbound.gnss.constellation_doubts import contradicting
 from navbound.gnss.files import navigation_of, observations_of
 from navbound.gnss.receivers import unused_words
@@ -72,7 +73,7 @@ def _against_own(path: Path, known: pl.DataFrame, own: pl.DataFrame) -> list[str
     nearest = known.select("time_ns", "est_lat_rad", "est_lon_rad").sort("time_ns")
     both = nearest.join_asof(of_own, on="time_ns", strategy="nearest", tolerance=_SAME_NS).drop_nulls()
     apart = east_north_m(both.select("est_lat_rad", "est_lon_rad").to_numpy(), both.select("own_lat", "own_lon").to_numpy())
-    apart_m = np.hypot(apart[:, 0], apart[:, 1])
+    apart_m = sizes.horizontal(apart)
     n_far = int((apart_m > PLACES_APART_M).sum())
     if n_far <= OWN_APART_SHARE * both.height:
         return []

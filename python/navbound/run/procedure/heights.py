@@ -14,6 +14,7 @@ import numpy as np
 import polars as pl
 
 from navbound import vertical
+from navbound.evaluation import sizes
 from navbound.procedures.vertical import LIMIT_M
 from navbound.records.procedure import HeightResult, SettingResult
 
@@ -172,7 +173,7 @@ def height_results(part: pl.DataFrame, path: VerticalPath, altitude_m: Floats) -
                 path=path.shape,
                 n=values.size,
                 mean_m=float(values.mean()),
-                rms_m=float(np.sqrt(np.mean(values**2))),
+                rms_m=sizes.root_mean_square(values),
                 p95_m=float(np.quantile(np.abs(values), 0.95, method="higher")),
                 least_m=float(values.min()),
                 most_m=float(values.max()),

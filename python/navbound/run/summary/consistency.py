@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import anp
+from navbound.evaluation import sizes
 from navbound.evaluation.pieces import Squares, TrackCounts
 from navbound.methods import column_of
 from navbound.records.run import CovarianceConsistency, RegionCoverage
@@ -102,9 +103,9 @@ def _regions(epochs: Table, errors: tuple[str, ...]) -> list[RegionCoverage]:
     for known in _known(epochs, errors):
         error, covariance = known.error_m, known.covariance_m2
         circle = anp.circle(np.ascontiguousarray(covariance[:, :2, :2]), REGION_RISK)
-        counts["circle"].see(np.hypot(error[:, 0], error[:, 1]), circle, known.track)
+        counts["circle"].see(sizes.horizontal(error), circle, known.track)
         if "sphere" in counts:
-            counts["sphere"].see(np.linalg.norm(error, axis=1), anp.sphere(covariance, REGION_RISK), known.track)
+            counts["sphere"].see(sizes.spatial(error), anp.sphere(covariance, REGION_RISK), known.track)
     regions = []
     for region, count in counts.items():
         low, high = count.bootstrap()

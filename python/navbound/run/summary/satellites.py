@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import polars as pl
 
+from navbound.evaluation import sizes
 from navbound.gnss.receivers import USED
 from navbound.records.groups import SatelliteSummary
 
@@ -17,7 +18,7 @@ def satellites_of(heard: pl.DataFrame | None) -> list[SatelliteSummary]:
         pl.len().alias("n_heard"),
         (pl.col("fate") == USED).sum().alias("n_used"),
         pl.col("el_rad").max().alias("el_max_rad"),
-        (residual**2).mean().sqrt().alias("residual_rms_m"),
+        sizes.root_mean_square_of(residual).alias("residual_rms_m"),
         residual.get(residual.abs().arg_max()).alias("residual_most_m"),
         strength.mean().alias("cn0_mean_dbhz"),
         strength.min().alias("cn0_min_dbhz"),

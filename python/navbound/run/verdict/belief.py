@@ -10,6 +10,7 @@ import numpy as np
 import polars as pl
 
 from navbound import evaluation
+from navbound.evaluation import copies, sizes
 from navbound.evaluation.pieces import Series, Sizes
 from navbound.methods import column_of, method
 from navbound.read.checks.stated import LEVEL_SIGMAS
@@ -18,7 +19,6 @@ from navbound.run.verdict import rule
 from navbound.status import USABLE
 from navbound.storage.tables import Places, pieces, tracks
 from navbound.table.columns import HORIZONTAL
-from navbound.units import EARTH_RADIUS_M
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -48,11 +48,6 @@ MOST_RATIO = 1e9
 RISK_UNNAMED = 1e-4
 """Integrity risk of an hour where a level names none: a thousand times what any service level of the table allows, so that a level is never
 withdrawn for a demand that it does not make. Provenance: ours. [1]"""
-
-SAME_M, SAME_AT = 0.005, 1e-6
-"""An error at most this large [m] that a true covariance leaves at most so improbable [1] is no error of a measurement: half of what 1e-7
-degree are, in which tables state positions. A precise truth beside a precise estimate has a covariance that makes such errors probable.
-Provenance: ours."""
 
 APPROACH_S, HOUR_S = 150.0, 3600.0
 """Exposure of an integrity risk by approach (ICAO Annex 10: any approach, 150 s taken) and by hour."""
@@ -243,13 +238,16 @@ def _outside(epochs: _Usable, bound: str, error: str) -> tuple[int, int]:
     return n_outside, n
 
 
+def columns_of(epochs: pl.DataFrame, *names: str) -> NDArray[np.float64]:
+    """Columns side by side, shape (n, k)."""
+    return np.column_stack([column_of(epochs, name) for name in names])
+
+
 def copied(epochs: pl.DataFrame) -> tuple[int, int]:
     """Epochs of errors and levels at which the truth is the estimate, by a sixth of the level as sigma; and epochs with a true error."""
-    size = np.fmax(np.abs(column_of(epochs, "hpe_m")), np.hypot(column_of(epochs, "nse_e_m"), column_of(epochs, "nse_n_m")))
+    size = np.fmax(np.abs(column_of(epochs, "hpe_m")), sizes.horizontal(columns_of(epochs, "nse_e_m", "nse_n_m")))
     known = np.isfinite(size)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        improbable = -np.expm1(-0.5 * (LEVEL_SIGMAS * size / column_of(epochs, "hpl_m")) ** 2) <= SAME_AT
-    same = (size == 0.0) | ((size <= SAME_M) & improbable)
+    same = copies.is_none(size, np.square(column_of(epochs, "hpl_m") / LEVEL_SIGMAS))
     return int(same[known].sum()), int(known.sum())
 
 
@@ -259,86 +257,39 @@ def _copied_share(epochs: _Usable) -> float:
         return 0.0
     decimals = _decimals_of_copies(epochs)
     n = n_same = 0
-    for piece in epochs.tracks("nse_e_m", "nse_n_m", "cov_ee_m2", "cov_nn_m2", *_DEGREES):
-        east, north = column_of(piece, "nse_e_m"), column_of(piece, "nse_n_m")
-        size = np.hypot(east, north)
+    for piece in epochs.tracks("nse_e_m", "nse_n_m", "cov_ee_m2", "cov_nn_m2", *copies.DEGREES):
+        size = sizes.horizontal(columns_of(piece, "nse_e_m", "nse_n_m"))
         known = np.isfinite(size)
-        same = (size == 0.0) | _shifted_copies(piece)
+        same = (size == 0.0) | copies.shifted(piece)
         if decimals is not None:
-            same |= _rounded_copies(piece, decimals)
+            same |= copies.rounded(piece, decimals)
         if {"cov_ee_m2", "cov_nn_m2"} <= set(piece.columns):
-            # P(e' V^-1 e <= x) = 1 - exp(-x / 2); the smaller variance of both axes makes x largest, which is the careful side.
-            variance = np.fmin(column_of(piece, "cov_ee_m2"), column_of(piece, "cov_nn_m2"))
-            with np.errstate(divide="ignore", invalid="ignore"):
-                improbable = -np.expm1(-0.5 * size**2 / variance) <= SAME_AT
-            same |= (size <= SAME_M) & improbable
+            same |= copies.is_none(size, np.fmin(column_of(piece, "cov_ee_m2"), column_of(piece, "cov_nn_m2")))
         n, n_same = n + int(known.sum()), n_same + int(same[known].sum())
     return n_same / n if n else 0.0
 
 
-_TRAVELS_M = 100.0
-"""Extent of a track above which an error that stays the same to `SAME_M` is an offset of one solution: the error of two measurements
-moves with satellites and reflections. Provenance: ours."""
-
-
-def _shifted_copies(epochs: pl.DataFrame) -> NDArray[np.bool_]:
-    """Epochs of moving tracks whose truth is the estimate but for one constant offset."""
-    none = np.zeros(epochs.height, dtype=np.bool_)
-    if not {"est_lat_rad", "est_lon_rad", "cov_ee_m2", "cov_nn_m2"} <= set(epochs.columns):
-        return none
-    north_m = pl.col("est_lat_rad") * EARTH_RADIUS_M
-    east_m = pl.col("est_lon_rad") * pl.col("est_lat_rad").cos() * EARTH_RADIUS_M
-    extent_m = pl.max_horizontal((each.max() - each.min()).over("track") for each in (north_m, east_m))
-    moved_m = [pl.col(name) - pl.col(name).median().over("track") for name in ("nse_e_m", "nse_n_m")]
-    size_m = pl.sum_horizontal(each**2 for each in moved_m).sqrt()
-    variance = pl.min_horizontal("cov_ee_m2", "cov_nn_m2")
-    improbable = -(-0.5 * size_m**2 / variance).exp() + 1.0 <= SAME_AT
-    same = epochs.select(((extent_m > _TRAVELS_M) & (size_m <= SAME_M) & improbable).fill_null(value=False).alias("same"))["same"]
-    return same.to_numpy()
-
-
-_DECIMALS = range(3, 8)
-"""Decimals of a degree in which positions are written: 111 m to 1 cm. [1]"""
 _LEAST_COPIES, _LEAST_PLACES = 0.95, 10
 """Share of the epochs whose truth is the rounded estimate, and places that such a truth must have: one that stands is near by chance.
 Provenance: ours."""
 
 
-_DEGREES = ("est_lat_rad", "truth_lat_rad", "est_lon_rad", "truth_lon_rad")
-
-
 def _decimals_of_copies(epochs: _Usable) -> int | None:
     """Decimals of a degree to which the truth is the rounded estimate: to the resolution of such a truth there is no error."""
-    if not set(_DEGREES) <= epochs.columns:
+    if not set(copies.DEGREES) <= epochs.columns:
         return None
     places, n = np.empty((2, 0)), 0
-    n_same = dict.fromkeys(_DECIMALS, 0)
-    for piece in epochs.pieces(*_DEGREES):
-        degrees, known = _in_degrees(piece)
+    n_same = dict.fromkeys(copies.DECIMALS, 0)
+    for piece in epochs.pieces(*copies.DEGREES):
+        degrees, known = copies.in_degrees(piece)
         n += int(known.sum())
         if places.shape[1] < _LEAST_PLACES:
             places = np.unique(np.hstack([places, degrees[:, 1, known]]), axis=1)[:, :_LEAST_PLACES]
-        for decimals in _DECIMALS:
-            n_same[decimals] += int(_rounded_copies(piece, decimals).sum())
+        for decimals in copies.DECIMALS:
+            n_same[decimals] += int(copies.rounded(piece, decimals).sum())
     if places.shape[1] < _LEAST_PLACES:
         return None
-    return next((decimals for decimals in _DECIMALS if n_same[decimals] >= _LEAST_COPIES * n), None)
-
-
-def _in_degrees(epochs: pl.DataFrame) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Latitude and longitude of estimate and truth, shape (2, 2, n), and where all are known."""
-    degrees: NDArray[np.float64] = np.degrees([column_of(epochs, name) for name in _DEGREES]).reshape(2, 2, -1)
-    known: NDArray[np.bool_] = np.asarray(np.isfinite(degrees).all(axis=(0, 1)))
-    return degrees, known
-
-
-def _rounded_copies(epochs: pl.DataFrame, decimals: int) -> NDArray[np.bool_]:
-    """Epochs whose truth is the estimate rounded so."""
-    degrees, known = _in_degrees(epochs)
-    apart = np.abs(np.round(degrees[:, 0], decimals) - degrees[:, 1])
-    # A thousandth of the resolution: radians in between and back.
-    same: NDArray[np.bool_] = np.all(apart <= 10.0 ** -(decimals + 3), axis=0) & known
-    return same
+    return next((decimals for decimals in copies.DECIMALS if n_same[decimals] >= _LEAST_COPIES * n), None)
 
 
 def _magnitude(epochs: _Usable) -> Magnitude | None:

@@ -50,6 +50,12 @@ class Movement:
     per_radian_m: tuple[float, float]
     core: _core.Ground
 
+    def beside(self, right_m: Floats) -> tuple[Floats, Floats]:
+        """Latitude and longitude of a place beside each point of the path. [rad]."""
+        east_m, north_m = self.per_radian_m
+        lat_rad = self.lat_rad - right_m * np.sin(self.course_rad) / north_m
+        return lat_rad, self.lon_rad + right_m * np.cos(self.course_rad) / east_m
+
 
 def move(taxi: Taxi) -> Movement:
     """Drive the route as fast as sub-phases, turns and brakes allow.

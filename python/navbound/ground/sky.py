@@ -13,7 +13,7 @@ from navbound.gbas.modes import MODES, Mode
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from navbound.run.ground.motion import Movement
+    from navbound.ground.motion import Movement
     from navbound.scenario.taxi import Taxi
 
     Floats = NDArray[np.float64]

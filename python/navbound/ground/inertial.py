@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from navbound import gbas, gnss, ins
+from navbound.ground.sky import STEPS, line, mode_of
 from navbound.ins.settings import STANDARD_GRAVITY_MPS2
-from navbound.run.ground.sky import STEPS, line, mode_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from navbound.run.ground.motion import Movement
-    from navbound.run.ground.sky import Sky, Way
+    from navbound.ground.motion import Movement
+    from navbound.ground.sky import Sky, Way
     from navbound.scenario.taxi import Taxi
 
     Floats = NDArray[np.float64]

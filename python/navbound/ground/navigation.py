@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import gbas, gnss, rraim
-from navbound.run.ground.inertial import Inertial, InertialFlight, Solved
-from navbound.run.ground.sky import STEPS, Sky, line, look, mode_of, way
+from navbound.ground.inertial import Inertial, InertialFlight, Solved
+from navbound.ground.sky import STEPS, Sky, line, look, mode_of, way
 from navbound.scenario.taxi import check_satellites
 from navbound.status import REASONS
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from navbound.gbas import SubPhase
-    from navbound.run.ground.motion import Movement
+    from navbound.ground.motion import Movement
     from navbound.scenario.taxi import Taxi
 
     Floats = NDArray[np.float64]

@@ -11,17 +11,17 @@ import polars as pl
 
 from navbound import gbas
 from navbound.gbas.modes import K95
+from navbound.ground.motion import move
+from navbound.ground.navigation import Navigated, Navigator
 from navbound.records.run import CovarianceOrigin, EventSummary, Waypoint
 from navbound.run.campaign import Context, track_name
-from navbound.run.ground.motion import move
-from navbound.run.ground.navigation import Navigated, Navigator
 from navbound.scenario import taxi as scenarios
 from navbound.status import USABLE
 from navbound.table.columns import HORIZONTAL
 
 if TYPE_CHECKING:
     from navbound.gbas import SubPhase
-    from navbound.run.ground.motion import Movement
+    from navbound.ground.motion import Movement
     from navbound.scenario.taxi import Taxi
 
 _AT_ONCE = 4
@@ -100,8 +100,7 @@ def _table(taxi: Taxi, movement: Movement, navigated: Navigated, required: dict[
     budget = gbas.error_budget()
     fte = budget.sigma_fte_m * movement.core.steering((seed, track), n)
     # The aircraft steers by its estimate; where it really is lies an nse away.
-    est_lat = movement.lat_rad - fte * np.sin(movement.course_rad) / north_m
-    est_lon = movement.lon_rad + fte * np.cos(movement.course_rad) / east_m
+    est_lat, est_lon = movement.beside(fte)
     nse = -navigated.error_enu_m
     usable = np.isin(navigated.status.astype(np.str_), USABLE)
     phases = [required[name] for name in movement.phase]
