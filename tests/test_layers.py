@@ -131,17 +131,8 @@ def test_folders_are_small_and_say_what_is_in_them() -> None:
 
 
 def test_no_file_has_the_name_of_what_its_folder_defines() -> None:
-    """The import of a file puts it under its name into the folder, in the place of a function of that name."""
+    """The first import of a file puts it under its name into the folder, in the place of a function of that name."""
     for folder in {path.parent for path in modules().values()}:
         tree = ast.parse((folder / "__init__.py").read_text(encoding="utf-8"))
         defined = {node.name for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
-        imported = {alias.asname or alias.name for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names}
-        of_files = {
-            alias.name for node in tree.body if isinstance(node, ast.ImportFrom) and _is(node.module, folder) for alias in node.names
-        }
-        names = (defined | imported) - of_files
-        assert not names & {path.stem for path in folder.glob("*.py")}, folder
-
-
-def _is(module: str | None, folder: Path) -> bool:
-    return module == ".".join(("navbound", *folder.relative_to(PACKAGE).parts))
+        assert not defined & {path.stem for path in folder.glob("*.py")}, folder
