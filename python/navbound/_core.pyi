@@ -723,6 +723,7 @@ def araim_watch(
     airborne: list[float],
     numbers: list[float],
     smoothing_s: float | None,
+    keep_ranges: bool,
 ) -> dict[str, Any]: ...
 
 # RAIM
@@ -752,4 +753,5 @@ def raim_watch(
     airborne: list[float],
     numbers: list[float],
     smoothing_s: float | None,
+    keep_ranges: bool,
 ) -> dict[str, Any]: ...

@@ -8,6 +8,7 @@ the contract tests read this list. An algorithm of a caller's own joins it for a
 
 from __future__ import annotations
 
+import inspect
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
@@ -99,7 +100,16 @@ class Entry:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Recorded(Entry):
-    """Tested positions with levels from a receiver's observations: (observations, navigation, ``truth_ecef_m``, ...) -> ``Watched``."""
+    """Tested positions with levels from a receiver's observations: (observations, navigation, ``truth_ecef_m``, ...) -> ``Watched``.
+
+    One that takes ``keep_ranges`` is called with it, for the pictures of the sky.
+    """
+
+    @property
+    def keeps_ranges(self) -> bool:
+        """Whether it can say what became of every satellite."""
+        taken = inspect.signature(_loaded(self.call)).parameters
+        return "keep_ranges" in taken or any(each.kind is each.VAR_KEYWORD for each in taken.values())
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -3,6 +3,7 @@
 use crate::araim::Desk;
 use crate::outlook::{Outcome, Promise};
 use crate::positions::{Job, Watch, each_epoch};
+use crate::receivers::heard::Judged;
 use crate::receivers::ranges::{Tally, Unused};
 use navbound_core::bound::araim::exclusion::{Decision, Monitored};
 use navbound_core::bound::araim::modes::MOST_SATELLITES;
@@ -10,7 +11,7 @@ use navbound_core::bound::araim::ranging::Beyond;
 use navbound_core::bound::araim::service::Service;
 use navbound_core::bound::{NoLevels, Sight};
 use navbound_core::frame::{Displacement, Geodetic};
-use navbound_core::quantity::{GpsTime, Reason, Unavailable};
+use navbound_core::quantity::{GpsTime, Metres, Reason, Unavailable};
 use navbound_core::signal::SatelliteId;
 use navbound_core::solution::consistency::Consistency;
 use navbound_core::solution::led_off::Compared;
@@ -30,8 +31,21 @@ pub struct Watched {
     pub monitored: Monitored,
     /// Residuals of all satellites against the error model, where there are enough.
     pub consistency: Option<Consistency>,
-    /// Its satellites, to compare their codes with their phases.
+    /// Its satellites, to compare their codes with their phases, and the residual of each \[m\].
     compared: Vec<Compared>,
+    residuals_m: Vec<f64>,
+}
+
+impl Watched {
+    fn judged(&self) -> Judged<'_> {
+        Judged {
+            position: &self.position,
+            compared: &self.compared,
+            residuals_m: &self.residuals_m,
+            step_m: self.monitored.step.map(Metres::m),
+            excluded: &self.excluded,
+        }
+    }
 }
 
 /// Why an epoch's position, or its level, is not simply there.
@@ -61,7 +75,7 @@ pub fn watch(
         job,
         || Desk::new(promise.support.map(|s| s.p_const), true),
         |desk, time, ranges, tally| epoch(desk, time, ranges, tally, &Rules { job, promise }, service),
-        |watched| Some(&watched.as_ref().ok()?.compared),
+        |watched| watched.as_ref().ok().map(Watched::judged),
     )
 }
 
@@ -127,5 +141,5 @@ fn epoch(
     let position = fix.position.moved(&Displacement::new(east, north, up)).map_err(Unavailable::from)?;
     let out = |i: usize| i < MOST_SATELLITES && monitored.excluded >> i & 1 == 1;
     let excluded = satellites.iter().enumerate().filter(|(i, _)| out(*i)).map(|(_, s)| *s).collect();
-    Ok(Watched { position, n_sv: satellites.len(), excluded, monitored, consistency, compared })
+    Ok(Watched { position, n_sv: satellites.len(), excluded, monitored, consistency, compared, residuals_m })
 }

@@ -1,7 +1,7 @@
 //! Observations and navigation messages to positions, epoch by epoch on all cores.
 
 use crate::parallel;
-use crate::receivers::heard::{Heard, Listed};
+use crate::receivers::heard::{Heard, Judged, Listed, Tested};
 use crate::receivers::phases::Compare;
 use crate::receivers::ranges::{Records, Source, Tally, Unused, plans};
 use crate::receivers::signals::Plan;
@@ -296,6 +296,8 @@ pub struct Watch<T> {
     pub smoothed_share: Option<f64>,
     /// What was made of codes against their phases.
     pub comparisons: Comparisons,
+    /// Every satellite that was heard at each epoch, where ranges are kept.
+    pub heard: Vec<Vec<Tested>>,
     /// Epochs whose codes moved together as their phases did not.
     led_off: Vec<bool>,
 }
@@ -313,26 +315,29 @@ impl<T> Watch<T> {
 }
 
 /// What `each` makes of every epoch's ranges, with what each range has beyond a smoothed one; it counts what it leaves. `desk` makes what a
-/// task keeps from one epoch to the next; results must not depend on it. `compared` is whose codes are compared with their phases.
+/// task keeps from one epoch to the next; results must not depend on it. `judged` is what became of the satellites, where there is a position.
 pub fn each_epoch<D, T: Send>(
     observations: &Observations,
     navigation: &Navigation,
     job: &Job,
     desk: impl Fn() -> D + Sync + Send,
     each: impl Fn(&mut D, GpsTime, (&[Range], &[Beyond]), &mut Tally) -> T + Sync + Send,
-    compared: impl Fn(&T) -> Option<&[Compared]>,
+    judged: impl for<'a> Fn(&'a T) -> Option<Judged<'a>> + Sync + Send,
 ) -> Watch<T> {
     let records = Records::new(navigation, None);
     let plans = plans(observations, &records, &job.systems, job.signals);
     let smoothed = smoothed(observations, &plans, job);
     let source = Source { observations, smoothed: smoothed.as_ref(), records: &records, plans: &plans };
     let task = |epochs: core::ops::Range<usize>| {
-        let (mut desk, mut ranges, mut beyond, mut tally) = (desk(), Vec::new(), Vec::new(), Tally::default());
+        let (mut desk, mut ranges, mut beyond, mut tally) = (desk(), Vec::new(), Vec::new(), Tally::listing(job.keep_ranges));
         let one = |epoch: usize| {
             source.collect(epoch, &mut ranges, &mut beyond, &mut tally);
-            each(&mut desk, observations.time[epoch], (&ranges, &beyond), &mut tally)
+            let watched = each(&mut desk, observations.time[epoch], (&ranges, &beyond), &mut tally);
+            let listed = job.keep_ranges.then(|| Listed { ranges: ranges.clone(), unused: tally.take_listed() });
+            let heard = listed.map(|listed| listed.tested(judged(&watched).as_ref()));
+            (watched, heard)
         };
-        let results: Vec<T> = epochs.map(one).collect();
+        let results: Vec<(T, Option<Vec<Tested>>)> = epochs.map(one).collect();
         (results, tally)
     };
     let outcomes = parallel::parts(observations.n_epochs(), EPOCHS_PER_TASK, task);
@@ -344,14 +349,19 @@ pub fn each_epoch<D, T: Send>(
         signals,
         smoothed_share,
         comparisons: Comparisons::default(),
+        heard: Vec::new(),
         led_off,
     };
     for (results, tally) in outcomes {
-        watch.epochs.extend(results);
+        for (watched, heard) in results {
+            watch.epochs.push(watched);
+            watch.heard.extend(heard);
+        }
         watch.tally.add(&tally);
     }
     let mut phases = Compare::new(&source);
-    watch.led_off = watch.epochs.iter().enumerate().map(|(epoch, one)| phases.next(epoch, compared(one)).is_some()).collect();
+    watch.led_off =
+        watch.epochs.iter().enumerate().map(|(epoch, one)| phases.next(epoch, judged(one).map(|j| j.compared)).is_some()).collect();
     watch.comparisons = phases.comparisons();
     watch
 }

@@ -4,6 +4,7 @@ use crate::araim::squared;
 use crate::araim_watch::{Rules, taken};
 use crate::outlook::{self, Outcome, Outlook, Promise, refusal, rows};
 use crate::positions::{Job, Watch, each_epoch};
+use crate::receivers::heard::Judged;
 use crate::receivers::ranges::Tally;
 use nalgebra::Vector3;
 use navbound_core::bound::araim::exclusion::Decision;
@@ -12,7 +13,7 @@ use navbound_core::bound::raim::exclusion::Monitored;
 use navbound_core::bound::raim::{Detail, Monitor, Requirement};
 use navbound_core::bound::{Algorithm, Levels, Sight};
 use navbound_core::frame::{Displacement, Geodetic};
-use navbound_core::quantity::{GpsTime, OutOfDomain, Reason, Unavailable};
+use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Reason, Unavailable};
 use navbound_core::signal::{Constellation, SatelliteId};
 use navbound_core::solution::consistency::Consistency;
 use navbound_core::solution::led_off::Compared;
@@ -153,8 +154,21 @@ pub struct Watched {
     pub tested: Tested,
     /// Residuals of all satellites against the error model, where there are enough.
     pub consistency: Option<Consistency>,
-    /// Its satellites, to compare their codes with their phases.
+    /// Its satellites, to compare their codes with their phases, and the residual of each \[m\].
     compared: Vec<Compared>,
+    residuals_m: Vec<f64>,
+}
+
+impl Watched {
+    fn judged(&self) -> Judged<'_> {
+        Judged {
+            position: &self.position,
+            compared: &self.compared,
+            residuals_m: &self.residuals_m,
+            step_m: self.tested.monitored.map_or([0.0; 3], |m| m.step.map(Metres::m)),
+            excluded: self.excluded.as_slice(),
+        }
+    }
 }
 
 /// Why an epoch's position, or its level, is not simply there.
@@ -183,7 +197,7 @@ pub fn watch(
     let desk = || Desk::new(requirement);
     let rules = Rules { job, promise };
     let each = |desk: &mut Desk, time, ranges: (&[Range], &[Beyond]), tally: &mut Tally| epoch(desk, time, ranges, tally, &rules);
-    each_epoch(observations, navigation, job, desk, each, |watched| Some(&watched.as_ref().ok()?.compared))
+    each_epoch(observations, navigation, job, desk, each, |watched| watched.as_ref().ok().map(Watched::judged))
 }
 
 fn epoch(
@@ -195,12 +209,12 @@ fn epoch(
 ) -> Result<Watched, Unavailable> {
     let taken = taken(ranges, time, rules, &mut desk.sights, tally)?;
     desk.columns = (0..desk.sights.len()).collect();
-    desk.residuals = taken.residuals_m;
+    desk.residuals.clone_from(&taken.residuals_m);
     let tested = desk.tested().map_err(Unavailable::from)?;
     let position = match tested.monitored {
         Some(Monitored { step: [east, north, up], .. }) => taken.fix.position.moved(&Displacement::new(east, north, up))?,
         None => taken.fix.position,
     };
     let excluded = tested.excluded.and_then(|i| taken.satellites.get(i).copied());
-    Ok(Watched { position, excluded, tested, consistency: taken.consistency, compared: taken.compared })
+    Ok(Watched { position, excluded, tested, consistency: taken.consistency, compared: taken.compared, residuals_m: taken.residuals_m })
 }

@@ -4,6 +4,7 @@ use crate::algorithms::levels;
 use crate::error::input_error;
 use crate::fields::fields;
 use crate::gnss::orbit;
+use crate::positions::heard;
 use crate::positions::satellites;
 use crate::receiver_files::{Navigation, Observations};
 use crate::status;
@@ -11,6 +12,7 @@ use navbound_assess::araim::{self, Row, Rule, Sights};
 use navbound_assess::araim_watch::{Watched, reason, watch};
 use navbound_assess::outlook::{Outcome, Outlook, Promise, refusal};
 use navbound_assess::positions::{Job, Signals, Watch};
+use navbound_assess::receivers::heard::Tested;
 use navbound_assess::smoothing::Form;
 use navbound_core::bound::NoLevels;
 use navbound_core::bound::araim::Levels;
@@ -247,7 +249,13 @@ fn araim_monitor<'py>(
 }
 
 /// Positions that a monitor tests afterwards: nothing is excluded.
-pub(crate) fn unmonitored(navigation: &Navigation, systems: &str, dual: bool, mask_rad: f64, smoothing_s: Option<f64>) -> Job {
+pub(crate) fn unmonitored(
+    navigation: &Navigation,
+    (systems, dual): (&str, bool),
+    mask_rad: f64,
+    smoothing_s: Option<f64>,
+    keep_ranges: bool,
+) -> Job {
     let settings = Settings {
         mask: Radians::new(mask_rad),
         ionosphere: navigation.records.klobuchar_gps.and_then(Ionosphere::broadcast).unwrap_or(Ionosphere::Climatology),
@@ -260,7 +268,7 @@ pub(crate) fn unmonitored(navigation: &Navigation, systems: &str, dual: bool, ma
         signals: if dual { Signals::Dual } else { Signals::Single },
         smoothing: smoothing_s.map(|window| (Form::DivergenceFree, Smoothing::over(window))),
         settings,
-        keep_ranges: false,
+        keep_ranges,
     }
 }
 
@@ -268,6 +276,13 @@ pub(crate) fn unmonitored(navigation: &Navigation, systems: &str, dual: bool, ma
 /// constellation; NaN where there are not enough).
 pub(crate) fn beside<T>(d: &Bound<'_, PyDict>, watch: &Watch<T>, consistency: impl Fn(&T) -> Option<Consistency>) -> PyResult<()> {
     satellites(d, &watch.tally, &watch.signals)?;
+    if !watch.heard.is_empty() {
+        let heard = heard(d.py(), &watch.heard, |tested| &tested.heard)?;
+        let column = |f: fn(&Tested) -> f64| watch.heard.iter().flatten().map(f).collect::<Vec<_>>().into_pyarray(d.py());
+        heard.set_item("residual_m", column(|tested| tested.residual_m))?;
+        heard.set_item("sigma_m", column(|tested| tested.sigma_m))?;
+        d.set_item("heard", heard)?;
+    }
     d.set_item("smoothed_share", watch.smoothed_share)?;
     d.set_item("compared", (watch.comparisons.n_compared, watch.comparisons.n_dropped))?;
     let rows: Vec<_> = watch.epochs.iter().map(consistency).collect();
@@ -280,7 +295,7 @@ pub(crate) fn beside<T>(d: &Bound<'_, PyDict>, watch: &Watch<T>, consistency: im
 
 /// Detection and exclusion at every epoch of an observation file.
 #[pyfunction]
-#[pyo3(signature = (observations, navigation, systems, dual, mask_rad, support, airborne, numbers, smoothing_s))]
+#[pyo3(signature = (observations, navigation, systems, dual, mask_rad, support, airborne, numbers, smoothing_s, keep_ranges))]
 #[expect(clippy::too_many_arguments, reason = "one for each argument of the Python function")]
 fn araim_watch<'py>(
     py: Python<'py>,
@@ -293,9 +308,10 @@ fn araim_watch<'py>(
     airborne: [f64; 4],
     numbers: [f64; 7],
     smoothing_s: Option<f64>,
+    keep_ranges: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (service, promise) = (service(&numbers)?, promise(&support, airborne)?);
-    let job = unmonitored(navigation, systems, dual, mask_rad, smoothing_s);
+    let job = unmonitored(navigation, (systems, dual), mask_rad, smoothing_s, keep_ranges);
     let watch = py.detach(|| watch(&observations.0, &navigation.records, &job, &promise, &service));
     let watched = &watch.epochs;
     let outcome = |w: &Result<Watched, NoLevels>| match w {

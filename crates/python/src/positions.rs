@@ -66,7 +66,7 @@ fn solve_positions<'py>(
     d.set_item("compared", (solved.comparisons.n_compared, solved.comparisons.n_dropped))?;
     d.set_item("ionosphere", model_name(&model))?;
     d.set_item("ranges", if keep_ranges { Some(kept_ranges(py, &solved)?) } else { None })?;
-    d.set_item("heard", if keep_ranges { Some(heard(py, &solved)?) } else { None })?;
+    d.set_item("heard", if keep_ranges { Some(heard(py, &solved.heard, |h| h)?) } else { None })?;
     Ok(d)
 }
 
@@ -114,8 +114,9 @@ fn kept_ranges<'py>(py: Python<'py>, solved: &Positions) -> PyResult<Bound<'py, 
 }
 
 /// Every satellite that was heard, one row an epoch: index of the epoch, direction, strength, what became of it.
-fn heard<'py>(py: Python<'py>, solved: &Positions) -> PyResult<Bound<'py, PyDict>> {
-    let rows: Vec<_> = solved.heard.iter().enumerate().flat_map(|(i, each)| each.iter().map(move |h| (i as i64, h))).collect();
+pub(crate) fn heard<'py, H>(py: Python<'py>, epochs: &[Vec<H>], of: impl Fn(&H) -> &Heard) -> PyResult<Bound<'py, PyDict>> {
+    let rows: Vec<_> = epochs.iter().enumerate().flat_map(|(i, each)| each.iter().map(move |h| (i as i64, h))).collect();
+    let rows: Vec<_> = rows.into_iter().map(|(i, h)| (i, of(h))).collect();
     let d = PyDict::new(py);
     d.set_item("epoch", rows.iter().map(|(i, _)| *i).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("sv", rows.iter().map(|(_, h)| h.satellite.to_string()).collect::<Vec<_>>())?;

@@ -104,7 +104,7 @@ fn raim_predict<'py>(
 
 /// Detection and exclusion at every epoch of an observation file.
 #[pyfunction]
-#[pyo3(signature = (observations, navigation, systems, dual, mask_rad, support, airborne, numbers, smoothing_s))]
+#[pyo3(signature = (observations, navigation, systems, dual, mask_rad, support, airborne, numbers, smoothing_s, keep_ranges))]
 #[expect(clippy::too_many_arguments, reason = "one for each argument of the Python function")]
 fn raim_watch<'py>(
     py: Python<'py>,
@@ -117,9 +117,10 @@ fn raim_watch<'py>(
     airborne: [f64; 4],
     numbers: [f64; 3],
     smoothing_s: Option<f64>,
+    keep_ranges: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (requirement, promise) = (requirement(numbers)?, promise(&support, airborne)?);
-    let job = unmonitored(navigation, systems, dual, mask_rad, smoothing_s);
+    let job = unmonitored(navigation, (systems, dual), mask_rad, smoothing_s, keep_ranges);
     let watch = py.detach(|| raim::watch(&observations.0, &navigation.records, &job, &promise, &requirement));
     let watched = &watch.epochs;
     let d = decisions(py, &watched.iter().map(|w| w.as_ref().ok().map(|w| &w.tested)).collect::<Vec<_>>())?;

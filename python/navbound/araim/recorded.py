@@ -31,6 +31,7 @@ def watch(
     smoothing_s: float | None = 100.0,
     truth_ecef_m: ArrayLike | None = None,
     track: str | None = None,
+    keep_ranges: bool = False,
 ) -> Watched:
     """ARAIM of every epoch of an observation file: position, tests of its residuals, exclusion, levels.
 
@@ -57,6 +58,8 @@ def watch(
         True position, Earth-fixed. [m]
     track : str, optional
         Name of the track; by default the marker's or the file's.
+    keep_ranges : bool, optional
+        Keep what became of every satellite: `Watched.heard`.
 
     Returns
     -------
@@ -84,6 +87,7 @@ def watch(
         airborne_numbers(selected),
         numbers,
         checked_smoothing(smoothing_s),
+        keep_ranges,
     )
     outcome = np.array(recorded.pop("words"))[recorded.pop("outcome")]
     decision = np.array(recorded.pop("decision"), dtype=np.str_)

@@ -301,11 +301,24 @@ def _heard(heard: dict[str, Any] | None, ranges: pl.DataFrame | None, track: str
     if heard is None or ranges is None:
         return None
     every = _with_times(heard, time_ns).with_columns(pl.lit(track).alias("track"))
-    constellation, weight = pl.col("sv").str.slice(0, 1), pl.col("sigma_m") ** -2
-    clock = ((pl.col("residual_m") * weight).sum() / weight.sum()).over("time_ns", constellation)
-    of_used = ranges.select("time_ns", "sv", pl.col("residual_m") - clock, "sigma_m")
+    of_used = ranges.select("time_ns", "sv", _without_clock(pl.col("sigma_m")), "sigma_m")
     joined = every.join(of_used, on=["time_ns", "sv"], how="left", maintain_order="left")
     return joined.select(column.name for column in HEARD).with_columns(pl.selectors.float().fill_nan(None))
+
+
+def _without_clock(sigma_m: pl.Expr) -> pl.Expr:
+    """Residuals less the clock of their constellation, by the ranges that have such a deviation. [m]."""
+    weight = sigma_m**-2
+    return pl.col("residual_m") - ((pl.col("residual_m") * weight).sum() / weight.sum()).over("time_ns", pl.col("sv").str.slice(0, 1))
+
+
+def heard_by_monitor(heard: dict[str, Any] | None, track: str, time_ns: NDArray[np.int64]) -> pl.DataFrame | None:
+    """Every satellite that a monitor heard, with the residuals of those that it tested; its clocks are those of the satellites it keeps."""
+    if heard is None:
+        return None
+    every = _with_times(heard, time_ns).with_columns(pl.selectors.float().fill_nan(None), pl.lit(track).alias("track"))
+    every = every.with_columns(_without_clock(pl.when(pl.col("fate") == USED).then("sigma_m")))
+    return every.select(column.name for column in HEARD)
 
 
 def _orbit_words(orbits: PreciseOrbits | None) -> str:

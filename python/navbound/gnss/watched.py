@@ -12,7 +12,7 @@ from navbound.araim.settings import ErrorModel, Support, error_model, stated
 from navbound.errors import InputError
 from navbound.gnss.files import Navigation, Observations
 from navbound.gnss.monitor_fit import Fit, fit_of
-from navbound.gnss.receivers import SYSTEMS, compared_words, signal_words, unused_words, used_satellites, with_errors
+from navbound.gnss.receivers import SYSTEMS, compared_words, heard_by_monitor, signal_words, unused_words, used_satellites, with_errors
 from navbound.status import sentences
 
 if TYPE_CHECKING:
@@ -40,6 +40,8 @@ class Watched:
         Ranges by satellite: ``sv``, ``signals``, ``message``, ``n_ranges``; those below the mask are among them.
     fit : Fit
         Whether the residuals and the detections agree with the error model.
+    heard : DataFrame, optional
+        What became of every satellite, with its residual at the monitor's position; where ranges are kept.
     """
 
     epochs: pl.DataFrame
@@ -47,6 +49,7 @@ class Watched:
     unused: dict[str, int]
     used: pl.DataFrame
     fit: Fit
+    heard: pl.DataFrame | None = None
 
 
 def checked_model(navigation: Navigation, systems: str, signals: str, model: str | ErrorModel | None, mask_rad: float) -> ErrorModel:
@@ -92,8 +95,9 @@ def watched(
     ``p_false_alert`` is the risk that one epoch's tests detect a fault where there is none. [1]
     """
     position = {name: recorded[name] for name in ("est_lat_rad", "est_lon_rad", "est_h_m")}
-    named = [track or observations.marker or observations.path.name] * observations.n_epochs
-    epochs = pl.DataFrame({"track": named, "time_ns": observations.time_ns, **position, **columns})
+    named = track or observations.marker or observations.path.name
+    heard = heard_by_monitor(recorded.get("heard"), named, observations.time_ns)
+    epochs = pl.DataFrame({"track": [named] * observations.n_epochs, "time_ns": observations.time_ns, **position, **columns})
     # A value that does not exist is null in a table.
     epochs = epochs.with_columns(pl.selectors.float().fill_nan(None), pl.selectors.string().replace({"": None}))
     used, share = used_satellites(recorded["used"]), recorded["smoothed_share"]
@@ -106,7 +110,7 @@ def watched(
         "fit of the error model": fit.words,
         "codes led off": compared_words(recorded["compared"], observations.n_epochs),
     }
-    return Watched(epochs if truth_ecef_m is None else with_errors(epochs, truth_ecef_m), models, recorded["unused"], used, fit)
+    return Watched(epochs if truth_ecef_m is None else with_errors(epochs, truth_ecef_m), models, recorded["unused"], used, fit, heard)
 
 
 def checked_smoothing(smoothing_s: float | None) -> float | None:

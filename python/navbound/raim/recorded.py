@@ -33,6 +33,7 @@ def watch(
     smoothing_s: float | None = 100.0,
     truth_ecef_m: ArrayLike | None = None,
     track: str | None = None,
+    keep_ranges: bool = False,
 ) -> Watched:
     """RAIM of every epoch of an observation file: position, test of its residuals, exclusion, levels.
 
@@ -59,6 +60,8 @@ def watch(
         True position, Earth-fixed. [m]
     track : str, optional
         Name of the track; by default the marker's or the file's.
+    keep_ranges : bool, optional
+        Keep what became of every satellite: `Watched.heard`.
 
     Returns
     -------
@@ -77,7 +80,7 @@ def watch(
     promises, airborne = support_rows(support), airborne_numbers(selected)
     smoothing = checked_smoothing(smoothing_s)
     recorded = _core.raim_watch(
-        observations._core, navigation._core, systems, signals == "dual", mask_rad, promises, airborne, numbers, smoothing
+        observations._core, navigation._core, systems, signals == "dual", mask_rad, promises, airborne, numbers, smoothing, keep_ranges
     )
     outcome = np.array(recorded.pop("words"))[recorded.pop("outcome")]
     decision = np.array(recorded.pop("decision"), dtype=np.str_)

@@ -69,7 +69,7 @@ export function residuals(host: HTMLElement, scene: Scene, satellites: Satellite
     if (lines.length === 0) return () => undefined;
     return strip(host, scene, {
         id: "residuals", title: "Residuals by satellite", unit: "m", scales: ["data"], lines, show: (v) => signedMetres(v), height: 230, noLabels: true,
-        note: `Measured less computed range at the position, of satellites that were used. ${systems(satellites)}`,
+        note: `Measured less computed range at the position, of satellites that were used or that a monitor excluded. ${systems(satellites)}`,
         says: (i) => { const most = extreme(lines, i, Math.abs); return most === null ? "No residual at the cursor" : `Largest at the cursor: ${most.label} ${signedMetres(most.values[i])}`; },
     });
 }

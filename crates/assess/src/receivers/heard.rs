@@ -1,9 +1,12 @@
 //! What became of every satellite that a receiver heard, for those who look at the sky.
 
 use super::ranges::Unused;
+use nalgebra::Vector3;
+use navbound_core::frame::Geodetic;
 use navbound_core::geometry::{Direction, Observer};
 use navbound_core::quantity::Radians;
 use navbound_core::signal::SatelliteId;
+use navbound_core::solution::led_off::Compared;
 use navbound_core::solution::point::{Fix, Range};
 
 /// What became of a satellite at an epoch.
@@ -57,6 +60,39 @@ pub struct Heard {
     pub fate: Fate,
 }
 
+impl Heard {
+    /// One that is not to be used.
+    fn unused((satellite, why): &(SatelliteId, Unused)) -> Self {
+        Self { satellite: *satellite, direction: None, cn0_dbhz: f64::NAN, fate: Fate::Unused(*why) }
+    }
+}
+
+/// A satellite at an epoch that a monitor judged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tested {
+    /// What became of it.
+    pub heard: Heard,
+    /// Measured less computed range at the monitor's position, with the clocks of all satellites' position; NaN for one below the mask \[m\].
+    pub residual_m: f64,
+    /// Standard deviation of the range for accuracy; NaN likewise \[m\].
+    pub sigma_m: f64,
+}
+
+/// What a monitor made of an epoch's satellites.
+#[derive(Debug, Clone, Copy)]
+pub struct Judged<'a> {
+    /// The position.
+    pub position: &'a Geodetic,
+    /// Satellites above the mask.
+    pub compared: &'a [Compared],
+    /// The residual of each where all satellites put the receiver.
+    pub residuals_m: &'a [f64],
+    /// From there to the position: east, north, up \[m\].
+    pub step_m: [f64; 3],
+    /// Those that were excluded.
+    pub excluded: &'a [SatelliteId],
+}
+
 /// What was heard at one epoch, before anybody knows what became of it.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Listed {
@@ -67,6 +103,28 @@ pub(crate) struct Listed {
 }
 
 impl Listed {
+    /// What became of each with a monitor; `None` where there is no position.
+    pub(crate) fn tested(&self, judged: Option<&Judged<'_>>) -> Vec<Tested> {
+        let here = judged.map(|j| Observer::new(j.position));
+        let one = |r: &Range| {
+            let direction = here.and_then(|h| h.direction(&r.position).ok());
+            let (fate, [residual_m, sigma_m]) = match judged {
+                None => (Fate::NoPosition, [f64::NAN; 2]),
+                Some(j) => match j.compared.iter().zip(j.residuals_m).find(|(c, _)| c.satellite == r.satellite) {
+                    None => (Fate::Unused(Unused::BelowMask), [f64::NAN; 2]),
+                    Some((c, residual_m)) => {
+                        let fate = if j.excluded.contains(&r.satellite) { Fate::Excluded } else { Fate::Used };
+                        // The computed range is shorter by what the step points to the satellite.
+                        (fate, [residual_m + c.unit.dot(&Vector3::from(j.step_m)), 1.0 / c.weight.sqrt()])
+                    }
+                },
+            };
+            Tested { heard: Heard { satellite: r.satellite, direction, cn0_dbhz: r.cn0_dbhz, fate }, residual_m, sigma_m }
+        };
+        let without = self.unused.iter().map(|left| Tested { heard: Heard::unused(left), residual_m: f64::NAN, sigma_m: f64::NAN });
+        self.ranges.iter().map(one).chain(without).collect()
+    }
+
     /// What became of each, where these satellites are in the position.
     pub(crate) fn fates(&self, fix: Option<&Fix>, used: &[SatelliteId], mask: Radians) -> Vec<Heard> {
         let here = fix.map(|f| Observer::new(&f.position));
@@ -83,12 +141,6 @@ impl Listed {
             };
             Heard { satellite: r.satellite, direction, cn0_dbhz: r.cn0_dbhz, fate }
         };
-        let without = |(satellite, why): &(SatelliteId, Unused)| Heard {
-            satellite: *satellite,
-            direction: None,
-            cn0_dbhz: f64::NAN,
-            fate: Fate::Unused(*why),
-        };
-        self.ranges.iter().map(one).chain(self.unused.iter().map(without)).collect()
+        self.ranges.iter().map(one).chain(self.unused.iter().map(Heard::unused)).collect()
     }
 }

@@ -88,7 +88,8 @@ def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Re
     observations = gnss.read_observations(path)
     require_most_epochs(observations)
     require_same_time(observations, records)
-    monitored_epochs = monitor(observations, records, truth_ecef_m=truth.ecef_m, **monitored(solving or Solving()))
+    kept = {"keep_ranges": True} if monitor.keeps_ranges else {}
+    monitored_epochs = monitor(observations, records, truth_ecef_m=truth.ecef_m, **kept, **monitored(solving or Solving()))
     notes = [f"{path.name}: {words}" for words in decisions(monitored_epochs.epochs)]
     notes += [f"{path.name}: {name}: {words}" if name in OF_FILE else f"{name}: {words}" for name, words in monitored_epochs.models.items()]
     refused = [*of_observations(observations), *of_navigation(records)]
@@ -104,6 +105,7 @@ def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Re
         [one.model_dump() for one in refused],
         notes,
         "" if monitored_epochs.fit.believable else CONTRADICTED,
+        heard=monitored_epochs.heard,
         position_doubts=place_doubts(epochs, observations, truth),
     )
 
