@@ -100,6 +100,26 @@ def test_where_the_deck_has_no_solution_there_is_no_position(tmp_path: Path) -> 
     assert (whole.summary.verdict.id, whole.summary.verdict.n_judged) == ("inside", N)
 
 
+@pytest.mark.parametrize(("name", "usual", "unit", "id_"), [("HPLwas", "mt", "nm", "not_shown"), ("HPLwas", "mt", "ft", "inside")])
+def test_a_level_in_another_unit_than_the_usual_one_is_compared_in_it(tmp_path: Path, name: str, usual: str, unit: str, id_: str) -> None:
+    path = log(tmp_path / "a.csv", [row(k) for k in range(N)])
+    units = [usual if each.strip() == name else written for each, written in zip(NAMES.split(","), UNITS.split(","), strict=True)]
+    at = [each.strip() for each in NAMES.split(",")].index(name)
+    units[at] = unit
+    path.write_text(path.read_text(encoding="utf-8").replace(UNITS, ",".join(units)), encoding="utf-8")
+    run = navbound.analyze(path, spec="RNP 0.3", sigma_m=5.0)
+    assert run.summary.verdict.id == id_
+    assert "hpl_m" not in run.epochs.columns
+    assert any(f"{name} [{unit}]" in each for each in run.summary.verdict.unread)
+
+
+def test_a_speed_in_another_unit_than_the_usual_one_is_read_in_it(tmp_path: Path) -> None:
+    path = log(tmp_path / "a.csv", [row(k).replace(" 116.6,", " 216.0,") for k in range(N)])
+    path.write_text(path.read_text(encoding="utf-8").replace("    kt,", "  km/h,"), encoding="utf-8")
+    epochs = read(path).epochs
+    np.testing.assert_allclose(epochs["ground_speed_mps"].to_numpy(), 60.0, rtol=1e-12)
+
+
 @pytest.mark.parametrize("variation", ["", "none"])
 def test_a_magnetic_course_without_its_variation_is_no_track(tmp_path: Path, variation: str) -> None:
     epochs = read(log(tmp_path / "a.csv", [row(k, variation=variation if k == 7 else VARIATION_DEG) for k in range(N)])).epochs

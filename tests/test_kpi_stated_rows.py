@@ -114,7 +114,7 @@ def test_an_error_that_is_written_and_no_number_shows_nothing(errors: str, tmp_p
     assert verdict(tmp_path, f"{errors},15,22,10,not_available,").id == "inside"
 
 
-@pytest.mark.parametrize("levels", ["0,22", "-1,22", "15,0", "15 steps,22"])
+@pytest.mark.parametrize("levels", ["0,22", "-1,22", "-inf,22", "15,0", "15 steps,22"])
 def test_no_level_beside_ok_shows_nothing(levels: str, tmp_path: Path) -> None:
     judged = verdict(tmp_path, f"100,0,1,{levels},10,ok,")
     assert judged.id in {"not_shown", "not_believable"}

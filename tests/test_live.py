@@ -504,6 +504,16 @@ def test_a_file_that_analyze_reads_is_no_stream(tmp_path: Path) -> None:
     assert "this is flight log of a glider (IGC), which is not read: make a table of it" in str(done.exception)
 
 
+def test_a_session_that_was_killed_while_its_tables_were_written_goes_on(tmp_path: Path) -> None:
+    log, record, out = tmp_path / "log.jsonl", {"v": 1, "track": "A", "fte_m": 5.0, "course_rad": 0.0, "sigma_m": 3.0}, tmp_path / "out"
+    log.write_text("".join(json.dumps(record | {"time_ns": 1_317_644_000_000_000_000 + k * 1_000_000_000}) + "\n" for k in range(20)))
+    assert CliRunner().invoke(app, ["live", str(log), "--out", str(out)]).exit_code == 0
+    (out / "epochs.parquet").rename(out / "epochs.parquet.partial")
+    again = CliRunner().invoke(app, ["live", str(log), "--resume", "--out", str(out)])
+    assert (again.exit_code, "nothing new came since the session was left" in again.output) == (0, True), again.output
+    assert tables.epochs(out).height == 20
+
+
 @pytest.mark.parametrize(("step_s", "says"), [(1, False), (12, True)])
 def test_positions_further_apart_than_monitoring_waits_say_what_to_state(tmp_path: Path, step_s: int, says: bool) -> None:
     log, record = tmp_path / "log.jsonl", {"v": 1, "track": "A", "fte_m": 5.0, "course_rad": 0.0, "sigma_m": 3.0}

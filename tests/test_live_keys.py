@@ -96,6 +96,11 @@ AGAINST: list[dict[str, object]] = [
     {"gps_lat": "4842.6", "gps_lat_dir": "S"},
     {"gps": {"lat": "4801.0", "lat_dir": "N"}},
     {"latitude": 48.71, "latitude_ref": "S"},
+    {"lat": "48.03 deg"},
+    {"lat": "48,03"},
+    {"gps": {"GPSLatitude": [48, 6, 0.0], "GPSLongitude": [1, 43, 8.0]}},
+    {"horizontal_error": 2500.0},
+    {"acc95": "2.5 km"},
 ]
 NOT_AGAINST: list[dict[str, object]] = [
     {"alerts": []},
@@ -131,6 +136,8 @@ NOT_AGAINST: list[dict[str, object]] = [
     {"lat": "4842.6", "lat_dir": "N", "lon": "00143.2", "lon_dir": "E"},
     {"nmea": {"lat": "4842.6", "lat_dir": "N", "lon": "00143.2", "lon_dir": "E"}},
     {"lat": 48.71, "ns": "N", "lon": 1.72, "ew": "E"},
+    {"lat": "48.71 deg", "lon": "1,7200"},
+    {"gps": {"GPSLatitude": [48, 42, 9.0], "GPSLatitudeRef": "N", "GPSLongitude": [1, 43, 8.0], "GPSLongitudeRef": "E"}},
     {"obstacles": [{"lat": 10.0, "lon": 10.0}], "to_lat": 10.0, "lat_ms": 12.5},
 ]
 

@@ -114,18 +114,22 @@ def test_a_file_with_an_accuracy_that_is_not_understood_states_one(tmp_path: Pat
         assert ("states no accuracy" in words) != states
 
 
-def test_the_sentence_of_a_receiver_about_its_error_is_named(tmp_path: Path) -> None:
+def test_the_sentence_of_a_receiver_about_its_error_is_its_accuracy(tmp_path: Path) -> None:
     path = tmp_path / "a.nmea"
-    lines = [f"GPGGA,1000{k:02d}.00,4700.0000,N,00800.0000,E,1,09,1.0,500.0,M,47.0,M,," for k in range(30)]
+    lines = [f"GPGGA,1000{k:02d}.00,47{k * 0.03:07.4f},N,00800.0000,E,1,09,1.0,500.0,M,47.0,M,," for k in range(30)]
     date = "GPRMC,100000.00,A,4700.0000,N,00800.0000,E,0.0,0.0,060524,,,A"
 
     def whole(sentence: str) -> str:
         return f"${sentence}*{functools.reduce(lambda a, b: a ^ ord(b), sentence, 0):02X}\r\n"
 
-    path.write_bytes("".join(map(whole, [date, *lines, "PGRME,15.0,M,45.0,M,25.0,M"])).encode())
-    summary = navbound.analyze(path).summary
-    assert summary.verdict.unread == ["$PGRME (estimated position error)"]
-    assert not any("states no accuracy" in each for each in summary.assumptions)
+    for error_m, id_ in ((2.0, "inside"), (900.0, "not_shown")):
+        of_garmin = [each for line in lines for each in (line, f"PGRME,{error_m},M,45.0,M,25.0,M")]
+        path.write_bytes("".join(map(whole, [date, *of_garmin])).encode())
+        run = navbound.analyze(path, sigma_m=5.0)
+        assert run.summary.verdict.id == id_
+        assert run.epochs["cov_ee_m2"].to_list() == [25.0] * 30
+        assert navbound.analyze(path).epochs["cov_ee_m2"].to_list() == pytest.approx([error_m**2] * 30)
+    assert any("PGRME states an error and not its share of errors" in each for each in navbound.analyze(path).summary.assumptions)
 
 
 @pytest.mark.parametrize(("name", "value"), [("off_track", 3000.0), ("offtrack_nm", -2.0), ("crosstrack_error", -3000.0), ("HPE", 3000.0)])

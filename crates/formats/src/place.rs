@@ -151,7 +151,8 @@ fn of_hemispheres(text: &str) -> Option<Written> {
 #[must_use]
 pub fn of_coordinate(text: &str) -> Option<f64> {
     let text = text.trim();
-    if let Some(plain) = number(text) {
+    let text = UNITS.iter().find_map(|unit| text.strip_suffix(unit)).unwrap_or(text).trim_end();
+    if let Some(plain) = number(text).or_else(|| with_comma(text)) {
         return Some(plain);
     }
     let (body, sign) = text.strip_prefix('-').map_or((text, 1.0), |body| (body, -1.0));
@@ -166,6 +167,17 @@ pub fn of_coordinate(text: &str) -> Option<f64> {
         _ => return None,
     };
     Some(sign * deg)
+}
+
+/// Words of a unit behind a coordinate, the longer ones first.
+const UNITS: [&str; 4] = ["degrees", "degree", "degs", "deg"];
+
+/// A number with a comma in the place of its point, and two digits behind it at least: one with fewer may be two numbers.
+fn with_comma(text: &str) -> Option<f64> {
+    let (whole, part) = text.split_once(',')?;
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let plain = digits(whole.strip_prefix('-').unwrap_or(whole)) && digits(part) && part.len() > 1;
+    plain.then(|| number(&format!("{whole}.{part}"))).flatten()
 }
 
 fn tokens(text: &str) -> Option<Vec<Token>> {
@@ -268,6 +280,10 @@ mod tests {
             ("-48°51.4'", -48.856_67),
             ("4851.400N", 48.856_67),
             ("00217.700W", -2.295),
+            ("48.85667 deg", 48.856_67),
+            ("-48.5 degrees", -48.5),
+            ("48,85667", 48.856_67),
+            ("-48,50", -48.5),
         ] {
             assert!(of_coordinate(text).is_some_and(|read| (read - deg).abs() < 1e-4), "{text}: {:?}", of_coordinate(text));
         }

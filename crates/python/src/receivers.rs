@@ -41,7 +41,7 @@ fn read_positions<'py>(py: Python<'py>, content: &[u8], kind: &str) -> PyResult<
 type Number = fn(&Position) -> Option<f64>;
 
 /// Columns of plain numbers, by docs/notation.md.
-const COLUMNS: [(&str, Number); 10] = [
+const COLUMNS: [(&str, Number); 11] = [
     ("est_lat_rad", |p| p.lat_rad),
     ("est_lon_rad", |p| p.lon_rad),
     ("est_h_m", |p| p.h_m),
@@ -52,6 +52,7 @@ const COLUMNS: [(&str, Number); 10] = [
     ("vdop", |p| p.vdop),
     ("hpl_m", |p| p.hpl_m),
     ("vpl_m", |p| p.vpl_m),
+    ("unread_accuracy_m", |p| p.unread_accuracy_m),
 ];
 
 /// Ids of the kinds of logs and the messages that hold their positions, covariances first.

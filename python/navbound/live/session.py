@@ -379,7 +379,7 @@ def _prepare(out: Path, settings: Settings, origin: Origin, *, resume: bool) -> 
         f"{journal.SNAPSHOT}.partial",
         f"{journal.SENT}.partial",
     }
-    ours |= {"epochs.parquet", "events.parquet"}
+    ours |= {f"{name}.parquet{end}" for name in ("epochs", "events") for end in ("", ".partial")}
     try:
         out.mkdir(parents=True, exist_ok=True)
         present = {p.name for p in out.iterdir()}

@@ -28,8 +28,8 @@ COMPUTED = words(
 )
 """Words of positions that others computed or repeat, or that nothing measured."""
 
-FOREIGN = COMPUTED | words("adsc ads_c mode_s modes mode_ac mode_a_c")
-"""Words of sources whose positions are none that the aircraft claims a category of."""
+FOREIGN = COMPUTED | words("adsc ads_c mode_s modes mode_ac mode_a_c network network_provider cell cellular wifi wi_fi nlp")
+"""Words of sources whose positions are none that the aircraft claims a category of, and of a telephone's that no satellite gives."""
 
 NAMED_COMPUTED = rf"(?:^|[^a-z0-9])(?:multilat[a-z]*|mlat[0-9]+|{'|'.join(sorted(COMPUTED))})(?:[^a-z0-9]|$)"
 """In lower case with `_` for blanks and hyphens: a name of several words, one of which is such a word, as `ads_b/mlat`."""
@@ -42,13 +42,14 @@ OWN = words(
 
 OF_POSITION = words(
     "position_source pos_source position_src pos_src position_source_type position_source_id position_source_name position_origin "
-    "pos_origin source_of_position location_source fix_source position_method positioning_method positioning_source positioning_type"
+    "pos_origin source_of_position location_source location_provider fix_source "
+    "position_method positioning_method positioning_source positioning_type"
 )
 """Columns that say nothing but how the position came: a word that nobody knows is none of the aircraft's own."""
 OPENSKY_FOREIGN, OPENSKY_OWN = words("1 2"), words("0 3")
 """Numbers of OpenSky in them: 1 ASTERIX, 2 MLAT; 0 ADS-B, 3 FLARM."""
 
-OF_ANYTHING = words("type source source_type src data_source track_source surveillance_source surveillance_type")
+OF_ANYTHING = words("type source source_type src data_source track_source surveillance_source surveillance_type provider")
 """Columns that may say that, or what kind of aircraft, of message or of receiver: a word that is not known is named."""
 
 OF_NAVIGATION = words("nav_source navigation_source nav_src navigation_sensor nav_sensor gps_source gnss_source")

@@ -93,7 +93,8 @@ _WHO = (
 _SATELLITES = (
     "ns nsv nsat num_sv numsv n_sats nsats numsat num_sat numsats num_sats satellites n_satellites num_satellites sats svs n_used "
     "sats_used svs_used sv_used satellites_used used_sats used_svs used_satellites n_sats_used n_sv_used num_sats_used num_sv_used "
-    "num_satellites_used gps_sats gps_satellites gps_nsats gps_num_sats gps_sats_used gnss_sats gnss_satellites gnss_sats_used"
+    "num_satellites_used gpsnum osd_gpsnum gps_num num_gps gps_sats gps_satellites gps_nsats gps_num_sats gps_sats_used gnss_sats "
+    "gnss_satellites gnss_sats_used"
 )
 """Names of the number of satellites of a position; one of those in view is none the smaller."""
 
@@ -266,8 +267,12 @@ GARMIN_COLUMNS: dict[str, tuple[str, str]] = {
     "hpl_m": ("HPLwas", "m"),
     "vpl_m": ("VPLwas", "m"),
 }
+GARMIN_UNITS = {
+    **{"Latitude": "degrees", "Longitude": "degrees", "AltGPS": "ft wgs", "GndSpd": "kt", "TRK": "deg", "MagVar": "deg"},
+    **{"HPLwas": "mt", "HPLfd": "mt", "VPLwas": "mt"},
+}
 GARMIN_TRACK = ("TRK", "MagVar")
-"""Logs of Garmin's flight decks (G1000 and its kin), and what columns that one of them may lack hold, in the units of their second line.
+"""Logs of Garmin's flight decks (G1000 and its kin), what columns that one of them may lack hold, and their usual units.
 The levels are those of SBAS, which stand beside a differential fix alone. The course is magnetic, the variation positive to the east.
 Provenance: inferred from headers and from two flights, of which one has a variation of 3.3 degrees and moves 3.4 degrees off its course."""
 

@@ -41,6 +41,8 @@ _NOTES = {
     "worse_accuracy": "hAcc or vAcc is worse than NAV-COV beside it; the covariance was enlarged to it",
     "worse_expected_errors": "the expected errors of GBS are worse than GST beside them; the covariance was enlarged to them",
     "datum": "datum {0} of the receiver is not WGS-84; positions are taken as they stand",
+    "error_of_no_share": "PGRME states an error and not its share of errors: that of the plane is taken for the standard deviation of each "
+    "axis, which is careful for a share of 39 % or more (ours)",
     "expected_errors": "without GST the expected errors of GBS stand for standard deviations",
     "of_rmc": "no GGA comes, so positions are those of RMC, which states no height, number of satellites, dilution or accuracy of its own",
     "no_separation": "GGA without the separation of the geoid: heights are left out",

@@ -160,6 +160,7 @@ impl Letters<'_> {
         }
         let text = match value {
             Value::Number(number) if number.as_f64().is_some_and(|number| number >= 0.0) => number.to_string(),
+            Value::Array(_) => number(value).filter(|number| *number >= 0.0)?.to_string(),
             Value::String(text) if text.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.') => text.clone(),
             _ => return None,
         };
@@ -196,14 +197,24 @@ fn has_digits(text: &str) -> bool {
     text.contains(|c: char| c.is_ascii_digit())
 }
 
-/// A number, or a text of a coordinate.
+/// A number, a text of a coordinate, or degrees, minutes and seconds in a list, as EXIF has them.
 fn number(value: &Value) -> Option<f64> {
+    if let Value::Array(all) = value {
+        let [degrees, rest @ ..] = all.as_slice() else { return None };
+        let parts: Vec<f64> = rest.iter().map(Value::as_f64).collect::<Option<_>>()?;
+        let sexagesimal = (1..=2).contains(&parts.len()) && parts.iter().all(|part| (0.0..60.0).contains(part));
+        let [minutes, seconds] = [parts.first().copied()?, parts.get(1).copied().unwrap_or(0.0)];
+        return degrees
+            .as_f64()
+            .filter(|degrees| sexagesimal && degrees.fract() == 0.0)
+            .map(|degrees| degrees + (minutes / 60.0 + seconds / 3600.0).copysign(degrees));
+    }
     value.as_f64().or_else(|| value.as_str().and_then(place::of_coordinate))
 }
 
 /// The two numbers of a list that may be a place, with a height at most.
 fn numbers(all: &[Value]) -> Option<[f64; 2]> {
-    let numbers: Option<Vec<f64>> = all.iter().map(number).collect();
+    let numbers: Option<Vec<f64>> = all.iter().map(|each| number(each).filter(|_| !each.is_array())).collect();
     match *numbers? {
         [first, second] | [first, second, _] => Some([first, second]),
         _ => None,

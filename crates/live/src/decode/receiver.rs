@@ -6,7 +6,7 @@ use crate::codec::{Damaged, Reader, Writer};
 use crate::counters::Refused;
 use crate::position::{Position, Shown, TrackId};
 use navbound_core::quantity::{Reason, Status};
-use navbound_formats::receiver::position::{Dated, Datum, Decoder, Ends, Heard, Item, Kind, MOST_MESSAGES, Message, OfDay, State};
+use navbound_formats::receiver::position::{Dated, Datum, Decoder, Ends, Heard, Item, Kind, MOST_MESSAGES, Message, Near, OfDay, State};
 
 /// A report, or why there is none; nothing for a date or a datum.
 pub(super) fn decoded(item: Item, track: TrackId, against: &mut Names) -> Option<Decoded> {
@@ -39,7 +39,7 @@ pub(super) fn decoded(item: Item, track: TrackId, against: &mut Names) -> Option
 }
 
 pub(super) fn write(decoder: &Decoder, to: &mut Writer) {
-    let (state, Heard { dated, datum, gga }) = decoder.state();
+    let (state, Heard { dated, datum, gga, near, against, loose_m }) = decoder.state();
     to.option(state.key, Writer::i64);
     to.u32(state.messages.len() as u32);
     for message in &state.messages {
@@ -62,6 +62,17 @@ pub(super) fn write(decoder: &Decoder, to: &mut Writer) {
     }
     datum.talker.iter().for_each(|byte| to.u8(*byte));
     to.flag(*gga);
+    to.option(*near, |to, Near { place: (lat_rad, lon_rad), of_day: OfDay(of_day_ns) }| {
+        to.f64(lat_rad);
+        to.f64(lon_rad);
+        to.i64(of_day_ns);
+    });
+    to.option(against.as_deref(), |to, stated| to.bytes(stated.as_bytes()));
+    to.option(*loose_m, Writer::f64);
+}
+
+fn stated(from: &mut Reader<'_>) -> Result<Option<String>, Damaged> {
+    from.option(|from| from.bytes().and_then(|text| core::str::from_utf8(text).map(str::to_owned).map_err(|_| Damaged("not a text"))))
 }
 
 pub(super) fn read(kind: Kind, from: &mut Reader<'_>) -> Result<Decoder, Damaged> {
@@ -77,12 +88,12 @@ pub(super) fn read(kind: Kind, from: &mut Reader<'_>) -> Result<Decoder, Damaged
         let (year, month, day) = (i32::try_from(from.i64()?).map_err(|_| Damaged("not a year"))?, from.u8()?, from.u8()?);
         Ok(Dated { year, month, day, of_day: OfDay(from.i64()?) })
     })?;
-    let mut stated = || {
-        from.option(|from| from.bytes().and_then(|text| core::str::from_utf8(text).map(str::to_owned).map_err(|_| Damaged("not a text"))))
-    };
-    let (of_epoch, newest) = (stated()?, stated()?);
+    let (of_epoch, newest) = (stated(from)?, stated(from)?);
     let datum = Datum { of_epoch, newest, talker: [from.u8()?, from.u8()?] };
-    Ok(Decoder::with_state(kind, Ends::WithLast, state, Heard { dated, datum, gga: from.flag()? }))
+    let gga = from.flag()?;
+    let near = from.option(|from| Ok(Near { place: (from.f64()?, from.f64()?), of_day: OfDay(from.i64()?) }))?;
+    let (against, loose_m) = (stated(from)?, from.option(Reader::f64)?);
+    Ok(Decoder::with_state(kind, Ends::WithLast, state, Heard { dated, datum, gga, near, against, loose_m }))
 }
 
 #[cfg(test)]
@@ -93,9 +104,16 @@ mod tests {
     #[test]
     fn statements_that_hold_beyond_their_epoch_are_written_down() {
         let mut decoder = Decoder::new(Kind::Nmea, Ends::WithLast);
-        for body in
-            ["GPGGA,,,,,,0", "GPRMC,120000.00,A,4900.0,N,00230.0,E,1.0,0.0,221126,,,A", "GPDTM,NAD27,,,,,,,W84", "GPDTM,W84,,,,,,,W84"]
-        {
+        for body in [
+            "GPGGA,120000.00,4900.0,N,00230.0,E,1,08,1.0,100.0,M,47.0,M,,",
+            "GPRMC,120000.50,A,4910.0,N,00230.0,E,1.0,0.0,221126,,,A",
+            "GPGST,120000.70,1.0,,,,2.0,3.0,4.0",
+            "GPGLL,4900.0,N,00230.0,E,120000.80,A,A",
+            "GPGGA,,,,,,0",
+            "GPRMC,120000.00,A,4900.0,N,00230.0,E,1.0,0.0,221126,,,A",
+            "GPDTM,NAD27,,,,,,,W84",
+            "GPDTM,W84,,,,,,,W84",
+        ] {
             decoder.take(&Frame::Nmea(body.as_bytes()), 0, &mut Vec::new());
             let mut to = Writer::default();
             write(&decoder, &mut to);

@@ -434,7 +434,11 @@ def _ended(session: Session, settings: Settings, *, json: bool) -> None:
         f"refused: {refused or 'nothing'}; positions not used: {unusable or 'none'}; repeated times: {repeated:g}; "
         f"session in {session.folder}"
     )
-    if not session.n_epochs:
+    # A session that is gone on with and had read its source to the end has nothing new to judge.
+    again = not session.n_epochs and counters["n_records"] > 0
+    if again:
+        sentence += "; nothing new came since the session was left"
+    elif not session.n_epochs:
         unreadable = not counters["n_records"] and not counters["refused_too_old"]
         why = f": {_unread(settings.format)}" if unreadable else ""
         sentence += f"; no epoch was judged{why}"
@@ -455,11 +459,12 @@ def _ended(session: Session, settings: Settings, *, json: bool) -> None:
         sentence += f"; {session.unfinished}"
     # A session that was resumed counts the epochs of before among those that are not used.
     unused = session.n_epochs == sum(n for name, n in counters.items() if name.startswith("unusable_"))
-    if session.n_epochs and unused:
+    unused = unused and session.n_epochs > 0
+    if unused:
         sentence += "; no position was used"
     if json:
         say(sentence)
     else:
         out_console.print(sentence, markup=False, highlight=False, soft_wrap=True)
-    if session.unfinished or not session.n_epochs or unused:
+    if session.unfinished or not (session.n_epochs or again) or unused:
         raise typer.Exit(NO_VERDICT)

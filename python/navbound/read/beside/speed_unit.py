@@ -99,6 +99,7 @@ class SpeedUnit:
             pl.col("time_ns", "est_lat_rad", "est_lon_rad").first(), pl.col(SPEED).median()
         )
         if first.height <= 1:
+            self.settle()
             return
         place, time_ns = first.select("est_lat_rad", "est_lon_rad").to_numpy(), first["time_ns"].to_numpy()
         elapsed_ns = np.diff(time_ns)

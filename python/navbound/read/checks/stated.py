@@ -137,7 +137,7 @@ def of_satellites(rows: pl.DataFrame) -> pl.DataFrame:
     if not few.any():
         return rows
     rows = rows.with_columns(pl.lit("ok").alias("status"))
-    return status.overridden(rows, pl.select(pl.when(few).then(pl.lit("coasting"))).to_series())
+    return status.overridden(rows, pl.select(pl.when(few).then(pl.lit("few_satellites"))).to_series())
 
 
 def of_counted_satellites(rows: pl.DataFrame, unusable: pl.Series | None = None) -> tuple[pl.DataFrame, int]:

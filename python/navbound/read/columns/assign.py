@@ -148,7 +148,8 @@ def assign(
 
 def _kinds(free: list[str], plain: set[str], texts: Container[str]) -> dict[str, Kind | None]:
     """What columns that nobody reads state of the validity or the integrity of positions, beside the plain names of all columns."""
-    kinds = {name: kind_of(plain_form(name)[0]) for name in free}
+    # Programs write the keys of objects with points between them: `OSD.isGPSused`, `gps.valid`.
+    kinds = {name: kind_of(plain_form(name)[0]) or kind_of(plain_form(name.rpartition(".")[2])[0]) for name in free}
     in_words = [name for name in free if name in texts and parted_form(name) in ACCURACY_WORDS.names]
     kinds |= dict.fromkeys(in_words, ACCURACY_WORDS)
     if plain & TRANSPONDER:

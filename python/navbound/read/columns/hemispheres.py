@@ -20,7 +20,10 @@ STATED: dict[str, Axis] = {"lat_hemisphere": "est_lat_rad", "lon_hemisphere": "e
 _SIDE = r"(?:dir|direction|ref|hem|hemi|hemisphere|indicator|ind|cardinal|sign|{0})"
 _NAMES = {
     f"{kind}_{axis}_rad": re.compile(rf"{of}(?:{written})_?{_SIDE.format(either)}|{of}{either}(?:_?(?:ind|indicator|hemisphere|dir))?")
-    for axis, written, either in (("lat", "lat|latitude", "n[_/]?s"), ("lon", "lon|lng|long|longitude", "e[_/]?w"))
+    for axis, written, either in (
+        ("lat", "lat|latitude", "n(?:orth)?[_/]?s(?:outh)?"),
+        ("lon", "lon|lng|long|longitude", "e(?:ast)?[_/]?w(?:est)?"),
+    )
     for kind, of in (("est", "(?:gps|gnss)?_?"), ("truth", "truth_?"))
 }
 """Names of columns of letters beside a coordinate. Provenance: ours, from headers of loggers and of EXIF."""

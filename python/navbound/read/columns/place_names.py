@@ -29,6 +29,8 @@ _NO_VEHICLE = NO_TRUTH | words(
     "dot variance accel acceleration g dev deviation cmd command trim stick force jerk ctrl control gain load"
 )
 """Parts of names of a latitude or a longitude, and of one that is none of the vehicle now. Provenance: ours."""
+_ACCELERATION = re.compile(r"(?i)lat_?ac$")
+"""Names of a lateral acceleration: `LatAc`. Provenance: from headers of Garmin's flight decks."""
 _INERTIAL = words("irs ins iru ir adiru adirs inertial dr dead reckoning deadreckoning")
 """Parts of names of a place that only inertial sensors keep. Provenance: ours."""
 _COORDINATE = "|".join(sorted(_LATITUDES | _LONGITUDES, key=len, reverse=True))
@@ -44,7 +46,9 @@ def speaks_of_place(name: str) -> bool:
     A number that is named of both coordinates is neither of them: PX4 counts `lat_lon_reset_counter`, and `delta_lat_lon[0]` is a step.
     """
     parts = _unnumbered(name)
-    return (_LATITUDES.isdisjoint(parts) != _LONGITUDES.isdisjoint(parts)) and parts.isdisjoint(_NO_VEHICLE)
+    return (
+        (_LATITUDES.isdisjoint(parts) != _LONGITUDES.isdisjoint(parts)) and parts.isdisjoint(_NO_VEHICLE) and not _ACCELERATION.search(name)
+    )
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,14 @@ def _without(names: list[str], columns: list[Column]) -> list[str]:
 
 def known_times(names: list[str], of_day: Container[str] = ()) -> list[Column]:
     """A column of a known name; one with dates goes before one of times of day, which needs another one for them."""
-    return _dated([n for n in names if n not in of_day]) or _dated([n for n in names if n in of_day])
+    # Milliseconds are those since some start where another column has the time.
+    times = [n for n in names if plain_form(n)[1] not in _SINCE_START]
+    parts = [times, names] if len(times) < len(names) else [names]
+    return next((known for part in parts for day in (False, True) if (known := _dated([n for n in part if (n in of_day) == day]))), [])
+
+
+_SINCE_START = frozenset(("ms", "msec", "millisecond", "milliseconds"))
+"""Units in brackets behind a name of a time. Provenance: ours."""
 
 
 def _local(names: list[str], of_day: Container[str]) -> list[Column]:

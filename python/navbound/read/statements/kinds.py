@@ -65,7 +65,8 @@ _NO = words(
 )
 _YES = words("1 true t yes y a valid ok good healthy on active available usable reliable sps dgps pps")
 _NO_FIX = words(
-    "0 -1 false no none no_fix nofix nosoln no_solution invalid not_valid lost v void n time time_only dr dead_reckoning estimated"
+    "0 -1 false no none no_fix nofix nosoln no_solution loi invalid not_valid lost v void n time time_only dr deadreckon dead_reckon "
+    "dead_reckoning estimated"
 )
 _FIX = words(
     "2 3 4 5 6 9 true yes fix valid 2d 3d 2ddiff 3ddiff 2d_fix 3d_fix gps gnss dgps dgnss rtk rtk_fixed rtk_float fixed float sps pps ppp "
@@ -166,7 +167,7 @@ KINDS: tuple[Kind, ...] = (
         words(
             "valid is_valid validity position_valid pos_valid gps_valid gnss_valid fix_valid data_valid nav_valid solution_valid "
             "location_valid usable reliable trusted healthy gps_ok gnss_ok position_ok pos_ok nav_ok integrity_ok raim_ok "
-            "fix_ok gnss_fix_ok used use in_use accepted believed "
+            "fix_ok gnss_fix_ok used use in_use gps_used gnss_used accepted believed "
             "good is_good pos_good position_good gps_good ok is_ok crc_ok checksum_ok parity_ok "
             "gnssfixok available is_available gps_available gnss_available raim_available integrity_available pl_valid hpl_valid xpl_valid"
         ),
@@ -201,7 +202,7 @@ KINDS: tuple[Kind, ...] = (
     ),
     Kind(
         "invalid",
-        words("q qual quality quality_flag solution_quality pos_quality position_quality nav_quality gnss_quality"),
+        words("q qual quality quality_flag pos_qual position_qual solution_quality pos_quality position_quality nav_quality gnss_quality"),
         _NO_FIX | words("bad poor unusable unreliable degraded unavailable"),
         _FIX | words("1 good ok"),
     ),
@@ -234,7 +235,7 @@ KINDS: tuple[Kind, ...] = (
             "is_estimated predicted is_predicted extrapolated is_extrapolated interpolated is_interpolated propagated coasted coasting "
             "is_coasting posstale pos_stale position_stale is_stale psr_only ssr_only cst "
             "simulated is_simulated inertial_only ins_only coast dr is_dr suspect suspected is_suspect held is_held imputed "
-            "is_imputed"
+            "is_imputed filled is_filled infilled"
         ),
         _YES,
         _NO - words("v invalid not_valid bad unusable fail failed unhealthy unreliable"),
@@ -301,7 +302,7 @@ KINDS: tuple[Kind, ...] = (
     # The least of a scale is none, whatever the scale; the others are named.
     Kind(
         "alert",
-        words("trust trust_level confidence confidence_level confidence_pct confidence_percent"),
+        words("gps_level gnss_level trust trust_level confidence confidence_level confidence_pct confidence_percent"),
         words("0 none no low very_low poor false untrusted unreliable"),
         words("high very_high full true yes"),
         below=_LEAST,
@@ -326,7 +327,7 @@ KINDS: tuple[Kind, ...] = (
             "unable_req_nav_perf unable_required_navigation_performance unable_nav_perf anp_alert faulty suspicious fail failed "
             "mi sim simulator reverted reversion nav_accuracy_downgraded navaccuracydowngrad "
             "is_from_mock_provider simulated_location untrusted fake ghost false_target bad_position bad_pos bad_fix "
-            "exclude excluded masked "
+            "exclude excluded masked hazard hazardous "
             "flag_bad bad_flag bit_fail bit_fault bite_fail bite_fault "
             "discarded discard flagged dnu rnp_unable unable map_shift gps_primary_lost loss_of_gps loss_of_gnss not_to_be_used"
         )

@@ -9,7 +9,8 @@ from navbound.read.columns.place_names import NO_TRUTH, speaks_of_place
 
 _SPEAKS = words(
     "status "
-    "valid invalid validity fix quality raim fde integrity alert alarm warning caution fault failure fail failed health healthy "
+    "hplfd hplwas vplwas valid invalid validity fix quality raim fde integrity alert alarm warning caution fault failure fail failed "
+    "health healthy "
     "flag flags mode nac nacp nacv nucp nic sil sils sda rc hpl hul hil hal vpl vul val xpl protection containment hil spoofing "
     "spoofed spoof jamming jammed jam interference reliable reliability trust usable error errors uncertainty accuracy acc hacc "
     "vacc pacc sigma std stddev epu anp epe eph epv ehpe cep drms rms fom hfom vfom "
@@ -88,7 +89,7 @@ def speaks_of_accuracy(name: str) -> bool:
     return (not _ACCURACY.isdisjoint(parts) or _speaks_of_distance_from_truth(name)) and _NO_POSITION.isdisjoint(parts)
 
 
-_LEVEL = words("hpl hil hul hpls hils")
+_LEVEL = words("hpl hil hul hpls hils hplfd hplwas")
 _LEVEL_IN_WORDS = tuple(map(words, ("protection level", "integrity level", "integrity limit", "containment radius", "containment limit")))
 """Parts of names of a horizontal protection level, a length. Provenance: ours."""
 
@@ -105,7 +106,7 @@ _WHAT = words("acc accuracy uncertainty sigma std stddev")
 BARE_LENGTHS = (
     words(
         "anp hacc pacc accuracy epe eph ehpe ehe epx epy cep cep50 cep95 r95 drms 2drms twodrms hrms hfom herr poserr "
-        "hpe herror h50 h95 mrse"
+        "hpe herror h50 h95 mrse horizontal_error horizontal_err position_error pos_err acc95 acc_95"
     )
     | {f"{what}{ending}" for what in words("err error hpe herror hacc") for ending in _ENDINGS}
     | _LEVEL

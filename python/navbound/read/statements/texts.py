@@ -79,7 +79,9 @@ _ALARM = (
     r"accur low|accuracy low|low accuracy|accur downgrad|map shift|(?:pos|position) uncertain|verify pos(?:ition)?|"
     r"verloren|ungueltig|ungültig|gestoert|gestört|perte|perdue?|invalide|brouillage|perdid[ao]|inválid[ao]|sin señal|"
     r"mlat\d*|multilat\w*|tis b|tisb|irs only|irs nav only|ins only|inertial only|disconnected|extrapolated|simulated data|"
-    r"simulated position)\b"
+    r"simulated position|(?:gps|gnss) interference|(?:pos|position) (?:frozen|wrong|stuck|offset)|"
+    r"(?:wrong|frozen|bad) (?:pos|position)|"
+    r"(?:gps|gnss|nav|navigation) integ(?:rity)? lost)\b"
 )
 _STATE_ALARM = _ALARM.replace("(unable", "(simulated|simulation|simulator|mocked|unable")
 """In a column of states a simulation is of the position, in a free text of anything."""

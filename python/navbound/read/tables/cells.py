@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import polars as pl
 
+from navbound.read.checks.levels import LEVELS
 from navbound.read.columns.place_names import sides
 from navbound.read.quantities import QUANTITY, UNITS
 from navbound.words.plurals import agreeing, counted
@@ -102,6 +103,7 @@ def numbers(column: pl.Series, what: Column) -> tuple[pl.Series, pl.Series]:
         pl.when(pl.col("si").is_between(q.low, q.high) & pl.col("raw").is_finite()).then("si").alias("value"),
         pl.when("empty").then(pl.lit("empty"))
         .when(pl.col("raw").is_null()).then(pl.lit("not a number"))
+        .when((pl.col("raw") == -math.inf) & pl.lit(q.name in LEVELS)).then(pl.lit("not a number"))
         .when(~pl.col("raw").is_finite()).then(pl.lit("not finite"))
         .when(~pl.col("si").is_between(q.low, q.high) & whole).then(pl.lit(in_e7))
         .when(~pl.col("si").is_between(q.low, q.high)).then(pl.lit(allowed))

@@ -221,10 +221,18 @@ def _log(source: Source, log: receivers.Log) -> Reading:
     # The receiver lived and had no position: a row of a table without one counts in the same way.
     absent = pl.DataFrame({"track": [source.stem] * len(log.absent_ns), "time_ns": pl.Series(log.absent_ns, dtype=pl.Int64)})
     lost = _left_out(absent, unjudged)
-    # Garmin's own sentence of its errors is named: which of the epochs around it is meant, and at which share, it does not say.
-    unread = ["$PGRME (estimated position error)"] if source.format.id == "nmea" and b"$PGRME," in source.content else []
+    # Places of its own that nothing reads are named.
+    unread = [name for name, sign in _PLACES_UNREAD.items() if source.format.id == "nmea" and sign in source.content]
     of_file = (source.record(log.n_rows), rejections.records)
     return Reading(out.drop(LINE, *empty), *of_file, notes=log.notes, columns=log.columns, left_out=lost, unread=unread)
+
+
+_PLACES_UNREAD = {
+    "PTNL,GGK (a position of Trimble)": b"$PTNL,GGK,",
+    "PASHR,POS (a position of Ashtech)": b"$PASHR,POS,",
+    "!AIVDO (the ship's own position)": b"!AIVDO,",
+}
+"""Sentences with a place that nothing compares, by what begins them."""
 
 
 def _left_out(*rows: pl.DataFrame) -> pl.DataFrame:

@@ -13,6 +13,7 @@ import polars as pl
 from navbound.errors import FormatError
 from navbound.read.checks.rejections import Rejections
 from navbound.read.columns.naming import declare
+from navbound.read.quantities import GARMIN, GARMIN_UNITS
 from navbound.read.statements.texts import alarms
 
 if TYPE_CHECKING:
@@ -123,7 +124,17 @@ def lines_of(text: str, first_line: int) -> pl.DataFrame:
     if rest.is_empty():
         return rest
     before = lines.filter(pl.col(LINE) < rest[LINE][0]).tail(1).with_columns(pl.col("text").str.strip_chars_start("# \t"))
+    if not before.is_empty():
+        rest[0, "text"] = _with_units(rest["text"][0], before["text"][0])
     return pl.concat([before, rest]) if not before.is_empty() and _names_of(before["text"][0], rest["text"][0]) else rest
+
+
+def _with_units(header: str, units: str) -> str:
+    """A header of a flight deck with the unit of the line above behind each name of which it is not the usual one."""
+    names, written = ([each.strip() for each in line.split(",")] for line in (header, units))
+    if len(names) != len(written) or not set(names) >= GARMIN:
+        return header
+    return ",".join(name if unit == GARMIN_UNITS.get(name, unit) else f"{name} [{unit}]" for name, unit in zip(names, written, strict=True))
 
 
 def _names_of(remark: str, row: str) -> bool:

@@ -241,6 +241,7 @@ def _since_start(known: NDArray[np.float64], declared_ns: float) -> str:
 def _iso(column: pl.Series) -> pl.Series:
     """ISO 8601 with a date and a time of day; without a zone it is UTC."""
     text = column.cast(pl.String).str.strip_chars().str.replace("T", " ", literal=True).str.replace("Z$", "+00:00")
+    text = text.str.replace(r"^(\d{4})[/.](\d{1,2})[/.](\d{1,2}) ", "$1-$2-$3 ")
     # A sixty-first second is parsed as the one before it; `_with_leap_seconds` makes it what it is.
     text = text.str.replace(_LEAP, "${1}:59${2}")
     zoned = pl.select(

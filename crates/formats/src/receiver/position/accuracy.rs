@@ -32,6 +32,14 @@ pub(super) fn expected_errors(gbs: &Sentence<'_>) -> Option<[f64; 6]> {
     Some(uncorrelated(gbs.number(3)?, gbs.number(2)?, gbs.number(4)?))
 }
 
+/// From Garmin's `PGRME`: errors of the plane and of the height, of which it states no share. Each counts as a standard deviation, that of the
+/// plane along each axis: careful for every share from 39 % on. Provenance: ours.
+pub(super) fn of_no_share(pgrme: &Sentence<'_>) -> Option<[f64; 6]> {
+    let size_m = |at: usize| pgrme.number(at).filter(|size| *size > 0.0 && pgrme.get(at + 1) == Some(b"M"));
+    let h_m = size_m(1)?;
+    Some(uncorrelated(h_m, h_m, size_m(3)?))
+}
+
 /// From `PUBX,00`: hAcc, the root of both horizontal variances together, and vAcc.
 pub(super) fn circle(pubx: &Sentence<'_>) -> Option<[f64; 6]> {
     let (h_m, v_m) = (pubx.number(9)?, pubx.number(10)?);

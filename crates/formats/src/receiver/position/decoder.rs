@@ -1,8 +1,10 @@
 //! Frames of a receiver to positions, one after the other.
 
+use super::dating::Dated;
 use super::epoch::{Ends, Epoch, Message, State, TALKERS, WITNESSES, all_of_kind};
-use super::nmea::{Dated, Heard};
-use super::{Kind, Position, nmea, novatel, sbf, ubx};
+use super::nmea::Heard;
+use super::witnesses::Near;
+use super::{Kind, Position, Reason, nmea, novatel, sbf, ubx, witnesses};
 use crate::stream::Frame;
 
 /// A message that is shorter than its definition, or has a field that is none.
@@ -190,9 +192,17 @@ impl Decoder {
         let Some(mut position) = position else {
             if self.kind == Kind::Nmea {
                 out.extend(nmea::accuracy_alone(messages).map(Item::Unpaired));
+                let heard = &mut self.heard;
+                heard.loose_m = heard.loose_m.into_iter().chain(witnesses::loose_m(messages)).reduce(f64::max);
+                heard.against = heard.near.and_then(|near| witnesses::against(messages, &near)).or_else(|| heard.against.take());
             }
             return;
         };
+        // What was contradicted is compared again, so that each of its epochs is.
+        let compared = position.absent.as_ref().is_none_or(|absent| absent.reason == Reason::Contradicted);
+        let place = position.lat_rad.zip(position.lon_rad).zip(position.of_day).filter(|_| compared);
+        let near = place.map(|(place, of_day)| Near { place, of_day });
+        self.heard = Heard { near, against: None, loose_m: None, ..core::mem::take(&mut self.heard) };
         // The reader of a whole file knows the dates behind a sentence too.
         if let (Ends::WithLast, Some(dated)) = (self.epoch.ends, self.heard.dated) {
             position.date(dated);

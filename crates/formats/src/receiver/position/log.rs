@@ -1,8 +1,9 @@
 //! The positions of a whole log, and a count of what did not become one.
 
+use super::dating::Dated;
 use super::decoder::{Decoder, Item};
 use super::epoch::{Ends, State};
-use super::nmea::{Dated, Heard};
+use super::nmea::Heard;
 use super::{Absent, Kind, Note, Position, Reason, sign};
 use crate::stream::{Among, Frame, Frames, Place};
 use navbound_core::quantity::GpsTime;

@@ -4,6 +4,7 @@
 //! use the same. Which words of a receiver mean a measured position stands in [`crate::measured`].
 
 mod accuracy;
+mod dating;
 mod datum;
 mod decoder;
 mod epoch;
@@ -14,11 +15,14 @@ mod sbf;
 mod sentence;
 pub mod sign;
 mod ubx;
+mod witnesses;
 
+pub use dating::Dated;
 pub use datum::Datum;
 pub use decoder::{Decoder, Item, Malformed};
 pub use epoch::{Ends, MOST_MESSAGES, Message, State};
-pub use nmea::{Dated, Heard};
+pub use nmea::Heard;
+pub use witnesses::Near;
 
 use crate::stream::Family;
 use core::f64::consts::{FRAC_PI_2, TAU};
@@ -155,6 +159,8 @@ pub enum Note {
     CircularCovariance,
     /// The expected errors of GBS stand for standard deviations.
     ExpectedErrors,
+    /// The error of PGRME, which states no share, stands for the standard deviation of each axis.
+    ErrorOfNoShare,
     /// Standard deviations without correlations.
     Uncorrelated,
     /// A stated accuracy worse than the covariance beside it; the covariance was enlarged to it.
@@ -177,6 +183,7 @@ impl Note {
         match self {
             Self::CircularCovariance => ("circular_covariance", [0, 0]),
             Self::ExpectedErrors => ("expected_errors", [0, 0]),
+            Self::ErrorOfNoShare => ("error_of_no_share", [0, 0]),
             Self::Uncorrelated => ("uncorrelated", [0, 0]),
             Self::WorseAccuracy => ("worse_accuracy", [0, 0]),
             Self::WorseExpectedErrors => ("worse_expected_errors", [0, 0]),
@@ -189,7 +196,7 @@ impl Note {
 
     /// Whether what it doubts is only a substitute.
     const fn of_substitute(self) -> bool {
-        matches!(self, Self::CircularCovariance | Self::ExpectedErrors)
+        matches!(self, Self::CircularCovariance | Self::ExpectedErrors | Self::ErrorOfNoShare)
     }
 }
 
@@ -237,6 +244,8 @@ pub struct Position {
     pub fields: Fields,
     /// What the covariance was read from.
     pub covariance_from: Option<&'static str>,
+    /// Accuracy that sentences of another time state \[m\].
+    pub unread_accuracy_m: Option<f64>,
     /// What the protection levels were read from.
     pub levels_from: Fields,
     /// Doubts.

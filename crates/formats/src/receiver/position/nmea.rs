@@ -6,33 +6,32 @@
 //!
 //! Source: NMEA 0183 version 4 as receivers' manuals give it; standard. GGA has no date, and its height stands above the geoid.
 
-use super::accuracy::{circle, covariance, expected_errors, worst};
+use super::accuracy::{circle, covariance, expected_errors, of_no_share, worst};
+use super::dating::{Dated, dated};
 use super::datum::Datum;
 use super::decoder::Step;
 use super::epoch::{Message, all_of_kind, of_kind};
-use super::sentence::{EARTH_M, SECOND_NS, Sentence, of_day, short_date, vtg_speed_mps};
+use super::sentence::{EARTH_M, Sentence, of_day, short_date, vtg_speed_mps};
+use super::witnesses::Near;
 use super::{Absent, Fields, Note, OfDay, Position, Reason, datum, no_better};
 use crate::measured::{GGA_QUALITIES, GSA_DIMENSIONS, LEAST_SATELLITES, NMEA_MODES};
-use crate::time::{Calendar, Scale, from_calendar, from_unix, to_calendar, to_unix};
-use navbound_core::quantity::{GpsTime, KNOT_MPS};
+use navbound_core::quantity::KNOT_MPS;
 use navbound_core::solution::plausible::DILUTION;
-
-const HALF_DAY_NS: i64 = 43_200 * SECOND_NS;
-/// A clock of a receiver without a fix that is this far from that of its first fix was not set. Provenance: ours \[s\].
-const UNSET_S: f64 = 600.0;
-/// Minutes of a time of day count 61 seconds.
-const MINUTE_NS: i64 = 61 * SECOND_NS;
 
 const DTM: u32 = name(*b"DTM");
 const GGA: u32 = name(*b"GGA");
-const GST: u32 = name(*b"GST");
-const GBS: u32 = name(*b"GBS");
-const GLL: u32 = name(*b"GLL");
-const GNS: u32 = name(*b"GNS");
+pub(super) const GST: u32 = name(*b"GST");
+pub(super) const GBS: u32 = name(*b"GBS");
+pub(super) const GLL: u32 = name(*b"GLL");
+pub(super) const GNS: u32 = name(*b"GNS");
 const GSA: u32 = name(*b"GSA");
 /// Position of u-blox's own sentence, `PUBX,00`.
 const PUBX: u32 = name(*b"UBX");
-const RMC: u32 = name(*b"RMC");
+/// Garmin's own sentence of its errors, `PGRME`.
+const PGRME: u32 = name(*b"RME");
+pub(super) const RMC: u32 = name(*b"RMC");
+/// Texts and alarms that speak against positions.
+const TXT: u32 = name(*b"TXT");
 const VTG: u32 = name(*b"VTG");
 const ZDA: u32 = name(*b"ZDA");
 
@@ -60,21 +59,8 @@ const fn name([a, b, c]: [u8; 3]) -> u32 {
     u32::from_be_bytes([0, a, b, c])
 }
 
-/// A date, and the time of day that it was written with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Dated {
-    /// Year.
-    pub year: i32,
-    /// Month, 1 to 12.
-    pub month: u8,
-    /// Day of the month, from 1.
-    pub day: u8,
-    /// Time of day.
-    pub of_day: OfDay,
-}
-
 /// What sentences said that holds beyond their epoch.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Heard {
     /// The last date.
     pub dated: Option<Dated>,
@@ -82,6 +68,12 @@ pub struct Heard {
     pub datum: Datum,
     /// A GGA came: RMC states no positions of its own, neither at the epochs of GGA nor between them.
     pub gga: bool,
+    /// The last position of a GGA.
+    pub near: Option<Near>,
+    /// What places of other times since then say against it.
+    pub against: Option<String>,
+    /// The worst accuracy of other times since then \[m\].
+    pub loose_m: Option<f64>,
 }
 
 /// Whether a sentence calls itself a GGA.
@@ -100,6 +92,16 @@ pub(super) fn step(body: &[u8], record: u64, gga: bool) -> Step {
     if body.starts_with(b"PUBX,00,") {
         let key = fields.get(2).and_then(of_day);
         return key.map_or(Step::Passed, |OfDay(key)| Step::Date { key, kind: PUBX, dated: None, kept: true });
+    }
+    if fields.get(0) == Some(b"PGRME") {
+        return match (fields.sizes(&[1, 3]), of_no_share(&fields)) {
+            (false, _) => Step::Malformed("an error of PGRME is no size"),
+            (true, None) => Step::Passed,
+            (true, Some(_)) => Step::Beside { kind: PGRME, number: |pgrme| Sentence(pgrme).number(1).unwrap_or(0.0) },
+        };
+    }
+    if [b"TXT,", b"ALR,", b"ALF,"].into_iter().any(|name| body.get(2..6) == Some(name)) {
+        return if speaks_against(&fields) { Step::Beside { kind: TXT, number: |_| 0.0 } } else { Step::Passed };
     }
     let address = fields.get(0).and_then(|address| address.get(2..)).and_then(|address| <[u8; 3]>::try_from(address).ok());
     let Some(kind) = address.map(name).filter(|kind| [DTM, GGA, GST, GBS, GLL, GNS, GSA, RMC, VTG, ZDA].contains(kind)) else {
@@ -122,9 +124,16 @@ pub(super) fn step(body: &[u8], record: u64, gga: bool) -> Step {
         };
     }
     // A receiver without a fix leaves its fields empty.
-    let Some(OfDay(key)) = fields.get(if kind == GLL { 5 } else { 1 }).and_then(of_day) else {
+    let written = fields.get(if kind == GLL { 5 } else { 1 }).filter(|time| !time.is_empty());
+    let Some(OfDay(key)) = written.and_then(of_day) else {
         let stated = Own { kind, sentence: fields }.stated();
-        return if places(kind, gga) { Step::Whole(Box::new(Position::none(record, Reason::NoFix, stated))) } else { Step::Passed };
+        let none = |reason, stated| Step::Whole(Box::new(Position::none(record, reason, stated)));
+        return match written.map(String::from_utf8_lossy) {
+            Some(time) if places(kind, gga) => none(Reason::TimeNotKnown, format!("time {time}, {stated}")),
+            Some(_) => Step::Malformed("the time of day of a sentence is none"),
+            None if places(kind, gga) => none(Reason::NoFix, stated),
+            None => Step::Passed,
+        };
     };
     match kind {
         GGA if !fields.sound(&GGA_NUMBERS) => Step::Malformed("a field of GGA is not a number"),
@@ -144,6 +153,23 @@ pub(super) fn step(body: &[u8], record: u64, gga: bool) -> Step {
     }
 }
 
+/// Words of texts and alarms of a receiver whose positions are none, and words that take them back. Provenance: ours.
+const ALARMS: [&str; 8] = ["SPOOF", "JAMM", "POSITION LOST", "LOST POSITION", "NO POSITION", "POS LOST", "GPS LOST", "GNSS LOST"];
+const TAKEN_BACK: [&str; 6] = ["NO SPOOF", "NO JAMM", "NOT ", "OFF", "NONE", "CLEARED"];
+
+/// The words of a text, or of an alarm.
+fn alarm(text: &Sentence<'_>) -> String {
+    String::from_utf8_lossy(text.0).into_owned()
+}
+
+/// Whether a text, or an alarm that is raised, speaks against positions.
+fn speaks_against(text: &Sentence<'_>) -> bool {
+    let is_raised = text.0.get(2..5) != Some(b"ALR") || text.get(3) == Some(b"A");
+    let words = alarm(text).to_uppercase();
+    let any = |list: &[&str]| list.iter().any(|word| words.contains(word));
+    is_raised && any(&ALARMS) && !any(&TAKEN_BACK)
+}
+
 /// Dimensions of the fix of a GSA sentence: a receiver of several systems writes one sentence each, and the system that has no satellite says 1.
 fn dimensions(gsa: &[u8]) -> f64 {
     Sentence(gsa).number(2).unwrap_or(0.0)
@@ -151,11 +177,6 @@ fn dimensions(gsa: &[u8]) -> f64 {
 
 /// Quality, satellites, HDOP, altitude, separation; latitude and longitude.
 const GGA_NUMBERS: [usize; 7] = [2, 4, 6, 7, 8, 9, 11];
-
-fn dated((year, month, day): (i32, u8, u8), of_day_ns: i64) -> Option<Dated> {
-    let noon = Calendar { year, month, day, hour: 12, minute: 0, nanoseconds: 0 };
-    from_calendar(noon, Scale::Utc).map(|_| Dated { year, month, day, of_day: OfDay(of_day_ns) })
-}
 
 /// The sentence that states the position: GGA, or RMC.
 struct Own<'a> {
@@ -209,10 +230,11 @@ pub(super) fn position(messages: &[Message], heard: &Heard) -> Option<Position> 
     let of_gst = worst(all(GST).filter_map(|gst| covariance(&gst)));
     let of_gbs = worst(all(GBS).filter_map(|gbs| expected_errors(&gbs)));
     let of_pubx = sentence(PUBX).and_then(|pubx| circle(&pubx));
-    let expected = worst([of_gbs, of_pubx].into_iter().flatten());
+    let of_pgrme = sentence(PGRME).and_then(|pgrme| of_no_share(&pgrme));
+    let expected = worst([of_gbs, of_pubx, of_pgrme].into_iter().flatten());
     let enlarged = of_gst.map(|own| no_better(own, expected));
     let biased = || all(GBS).find_map(|gbs| biased_range(&gbs));
-    let against = contradiction(&own, messages, heard.datum.of_epoch.as_deref()).or_else(biased);
+    let against = contradiction(&own, messages, heard.datum.of_epoch.as_deref()).or_else(biased).or_else(|| heard.against.clone());
     let of_rmc = sentence(RMC).and_then(|rmc| rmc.number(7)).filter(|knots| *knots >= 0.0).map(|knots| knots * KNOT_MPS);
     let speed_mps = of_rmc.or_else(|| sentence(VTG).and_then(|vtg| vtg_speed_mps(&vtg).ok()?));
     let course = sentence(RMC).and_then(|rmc| rmc.number(8)).or_else(|| sentence(VTG).and_then(|vtg| vtg.number(1)));
@@ -220,7 +242,8 @@ pub(super) fn position(messages: &[Message], heard: &Heard) -> Option<Position> 
     let usable = own.measured() && lat_rad.is_some() && lon_rad.is_some();
     let absent = |reason: Reason| move |stated: String| Absent { reason, stated };
     let few = || own.number(7).filter(|count| *count < f64::from(LEAST_SATELLITES)).map(|count| format!("{count} satellites"));
-    let of_others = || of_gbs.map(|_| Note::ExpectedErrors).or(of_pubx.map(|_| Note::CircularCovariance));
+    let notes = [of_gbs.map(|_| Note::ExpectedErrors), of_pubx.map(|_| Note::CircularCovariance), of_pgrme.map(|_| Note::ErrorOfNoShare)];
+    let of_others = || notes.into_iter().flatten().next();
     let substitute = if of_gst.is_some() { None } else { of_others() };
     let without_separation = (altitude.is_some() && separation.is_none()).then_some(Note::NoSeparation);
     let worse = enlarged.is_some_and(|(_, worse)| worse).then_some(Note::WorseExpectedErrors);
@@ -248,7 +271,10 @@ pub(super) fn position(messages: &[Message], heard: &Heard) -> Option<Position> 
             (false, _, Some(_)) => RMC_ALONE_AND_RMC,
             (false, ..) => RMC_ALONE_AND_VTG,
         },
-        covariance_from: of_gst.map(|_| "GST").or(of_gbs.map(|_| "GBS")).or(of_pubx.map(|_| "PUBX,00 hAcc, vAcc")),
+        unread_accuracy_m: heard.loose_m,
+        covariance_from: [(of_gst, "GST"), (of_gbs, "GBS"), (of_pubx, "PUBX,00 hAcc, vAcc"), (of_pgrme, "PGRME HPE, VPE")]
+            .into_iter()
+            .find_map(|(stated, from)| stated.map(|_| from)),
         notes: [if heard.gga { without_separation } else { Some(Note::OfRmc) }, worse.or(substitute)],
         ..Position::default()
     })
@@ -268,10 +294,14 @@ fn without_gga(messages: &[Message]) -> Option<Position> {
     [(RMC, "RMC", 1, 2, 12), (GLL, "GLL", 5, 6, 7), (GNS, "GNS", 1, ABSENT, 6)].into_iter().find_map(none)
 }
 
+/// The place that a sentence states.
+pub(super) fn place(of: &Sentence<'_>, at: usize) -> Option<(f64, f64)> {
+    of.angle(at, [b"N", b"S"]).zip(of.angle(at + 2, [b"E", b"W"]))
+}
+
 /// What the sentences of an epoch say against its position.
 fn contradiction(own: &Own<'_>, messages: &[Message], other_datum: Option<&str>) -> Option<String> {
     let sentence = |kind| of_kind(messages, kind).map(|message| Sentence(&message.body));
-    let place = |of: &Sentence<'_>, at: usize| of.angle(at, [b"N", b"S"]).zip(of.angle(at + 2, [b"E", b"W"]));
     let own_place = place(&own.sentence, own.at());
     // Status, mode, position, navigational status.
     let beside = [
@@ -288,7 +318,8 @@ fn contradiction(own: &Own<'_>, messages: &[Message], other_datum: Option<&str>)
     let mut each = beside
         .into_iter()
         .flat_map(|of| all_of_kind(messages, of.1).map(move |message| (of, message)))
-        .filter(|(_, message)| message.kind != GGA || Own::of(message).measured())
+        // Who has no fix may repeat an old place.
+        .filter(|(_, message)| message.kind != GGA || Sentence(&message.body).number(6) != Some(0.0))
         .map(|(of, message)| (of, Sentence(&message.body)));
     let stated = each.find_map(|((name, _, status, mode, at, navigational), other)| {
         let text = |at: usize| other.get(at).filter(|text| !text.is_empty()).map(String::from_utf8_lossy);
@@ -306,10 +337,13 @@ fn contradiction(own: &Own<'_>, messages: &[Message], other_datum: Option<&str>)
         (apart_m > ONE_PLACE_M + resolution_m).then(|| format!("position of {name} {apart_m:.0} m away"))
     });
     let flat = || sentence(GSA).map(|gsa| dimensions(gsa.0)).filter(|dimensions| *dimensions < GSA_DIMENSIONS);
+    let of_gns = || all_of_kind(messages, GNS).find_map(|gns| Sentence(&gns.body).number(8).filter(|dilution| *dilution > DILUTION));
     let wide = || sentence(GSA).and_then(|gsa| gsa.number(16)).filter(|dilution| *dilution > DILUTION);
     let own_word = || sentence(PUBX).and_then(|pubx| pubx.get(8)).filter(|fix| NO_FIX.contains(fix)).map(String::from_utf8_lossy);
     let further = stated.or_else(|| other_datum.map(str::to_owned));
+    let further = further.or_else(|| sentence(TXT).map(|text| alarm(&text)));
     let further = further.or_else(|| flat().map(|fix| format!("GSA fix {fix}")));
+    let further = further.or_else(|| of_gns().map(|hdop| format!("GNS HDOP {hdop}")));
     further.or_else(|| wide().map(|hdop| format!("GSA HDOP {hdop}"))).or_else(|| own_word().map(|fix| format!("PUBX fix {fix}")))
 }
 
@@ -331,10 +365,10 @@ fn biased_range(gbs: &Sentence<'_>) -> Option<String> {
 }
 
 /// Distance within which two sentences of one time give one place: receivers smooth and extrapolate them differently. Provenance: ours \[m\].
-const ONE_PLACE_M: f64 = 30.0;
+pub(super) const ONE_PLACE_M: f64 = 30.0;
 
 /// Distance of two near places.
-fn apart_m((lat, lon): (f64, f64), (other_lat, other_lon): (f64, f64)) -> f64 {
+pub(super) fn apart_m((lat, lon): (f64, f64), (other_lat, other_lon): (f64, f64)) -> f64 {
     let turn = core::f64::consts::TAU;
     let east = libm::remainder(other_lon - lon, turn) * libm::cos(lat);
     EARTH_M * libm::hypot(other_lat - lat, east)
@@ -343,43 +377,4 @@ fn apart_m((lat, lon): (f64, f64), (other_lat, other_lon): (f64, f64)) -> f64 {
 /// Number of the accuracy beside which no position stands.
 pub(super) fn accuracy_alone(messages: &[Message]) -> Option<u64> {
     messages.iter().find(|message| [GST, GBS].contains(&message.kind)).map(|message| message.record)
-}
-
-impl Position {
-    /// A receiver that has had no fix yet counts from midnight, or from when it was switched off: where such a time is far from that of the
-    /// first date behind it, nobody knows it.
-    pub(super) fn forget_time_before(&mut self, record: u64, dated: Dated) {
-        let without = self.record < record && self.absent.as_ref().is_some_and(|absent| absent.reason == Reason::NoFix);
-        let Some(time) = self.time.filter(|_| without) else { return };
-        let apart_s = gps_time(dated, dated.of_day.0).map_or(0.0, |of_date| of_date.seconds_since(time).abs());
-        if apart_s > UNSET_S {
-            self.time = None;
-        }
-    }
-
-    /// Make a time of a time of day near a dated one; midnight may lie between them.
-    pub(super) fn date(&mut self, dated: Dated) {
-        let Some(OfDay(of_day_ns)) = self.of_day else { return };
-        self.time = gps_time(dated, of_day_ns);
-        if self.time.is_none() && self.absent.is_none() {
-            let (minutes, second_s) = (of_day_ns / MINUTE_NS, (of_day_ns.rem_euclid(MINUTE_NS)) as f64 * 1e-9);
-            let reason = if second_s >= 60.0 { Reason::NoSuchLeapSecond } else { Reason::OutsideDomain };
-            let stated = format!("{:02}{:02}{second_s:05.2}", minutes / 60, minutes % 60);
-            self.absent = Some(Absent { reason, stated });
-        }
-    }
-}
-
-fn gps_time(Dated { year, month, day, of_day: OfDay(dated_ns) }: Dated, of_day_ns: i64) -> Option<GpsTime> {
-    let minutes = of_day_ns.div_euclid(MINUTE_NS);
-    let nanoseconds = of_day_ns.rem_euclid(MINUTE_NS);
-    let clock = Calendar { year, month, day, hour: (minutes / 60) as u8, minute: (minutes % 60) as u8, nanoseconds };
-    let apart = (minutes - dated_ns.div_euclid(MINUTE_NS)) * 60 * SECOND_NS;
-    let days = i64::from(apart < -HALF_DAY_NS) - i64::from(apart > HALF_DAY_NS);
-    if days == 0 {
-        return from_calendar(clock, Scale::Utc);
-    }
-    let noon = Calendar { hour: 12, minute: 0, nanoseconds: 0, ..clock };
-    let date = to_calendar(from_unix(to_unix(from_calendar(noon, Scale::Utc)?) + days * 2 * HALF_DAY_NS))?;
-    from_calendar(Calendar { year: date.year, month: date.month, day: date.day, ..clock }, Scale::Utc)
 }

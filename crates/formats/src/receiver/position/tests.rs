@@ -163,11 +163,104 @@ fn the_positions_of_two_talkers_at_one_time_are_one() {
         (gga("GP", "4900.0", 1), gga("GL", "4901.2", 1), Some("position of GGA 2224 m away")),
         (gga("GP", "4900.0", 1), gga("GL", "4901.2", 0), None),
         (gga("GP", "4901.2", 0), gga("GL", "4900.0", 1), None),
+        (gga("GP", "4900.0", 1), gga("GL", "4901.2", 8), Some("position of GGA 2224 m away")),
+        (gga("GP", "4900.0", 1), gga("GL", "4900.0", 6), None),
         (gga("GP", "4900.0", 0), gga("GL", "4900.0", 0), Some("quality 0, latitude 4900.0")),
     ] {
         let stated = reasons(&[ZDA, &first, &second, GST]);
         assert_eq!(stated.first().map(|(_, words)| words.as_str()), says, "{first} {second}");
         assert!(stated.len() < 2);
+    }
+}
+
+#[test]
+fn the_error_that_garmin_states_stands_where_no_other_does_and_is_not_passed_over() {
+    let of = |more: &[&str]| {
+        let log = read_sentences(&[&[ZDA, GGA], more].concat());
+        (log.positions[0].covariance_m2.map(|v| [v[0], v[2], v[5]]), log.positions[0].notes[1], log.left_out.len())
+    };
+    assert_eq!(of(&["PGRME,15.0,M,45.0,M,25.0,M"]), (Some([225.0, 225.0, 2025.0]), Some(Note::ErrorOfNoShare), 0));
+    // The larger of several.
+    assert_eq!(of(&["PGRME,15.0,M,45.0,M,25.0,M", "PGRME,900.0,M,45.0,M,25.0,M"]).0, Some([8.1e5, 8.1e5, 2025.0]));
+    let (beside, note, _) = of(&[GST, "PGRME,900.0,M,45.0,M,25.0,M"]);
+    assert!(beside.is_some_and(|v| v[0] + v[1] > 1.6e6) && note == Some(Note::WorseExpectedErrors), "{beside:?}");
+    assert_eq!(of(&["PGRME,,M,,M,,M"]), (None, None, 0));
+    assert_eq!(of(&["PGRME,15.0,F,45.0,F,25.0,F"]), (None, None, 0));
+    assert_eq!(of(&["PGRME,-15.0,M,45.0,M,25.0,M"]), (None, None, 1));
+}
+
+#[test]
+fn a_time_of_day_that_is_none_is_reported() {
+    let log = read_sentences(&[ZDA, GGA, GST, "GPGGA,120001.x,4900.0,N,00230.0,E,1,08,1.0,100.0,M,47.0,M,,", "GPRMC,120001.x,A,4900.0,N"]);
+    let reasons: Vec<_> = log.left_out.iter().map(|l| (l.reason, l.example.as_str())).collect();
+    let expected = ("time_not_known", "time 120001.x, quality 1, latitude 4900.0");
+    assert_eq!(reasons, [expected, ("damaged_message", "the time of day of a sentence is none")]);
+    assert_eq!((log.n_rows, log.absent.len()), (2, 1));
+}
+
+/// Two receivers in one log, whose clocks differ.
+#[test]
+fn a_place_of_another_time_far_away_takes_the_positions_behind_it() {
+    let rmc = |lat: &str, knots: &str| format!("IIRMC,12000S.50,A,{lat},N,00230.0000,E,{knots},80.0,221126,,,A");
+    let gll = |lat: &str| format!("IIGLL,{lat},N,00230.0000,E,12000S.30,A,A");
+    let gns = |lat: &str| format!("IIGNS,12000S.99,{lat},N,00230.0000,E,AA,09,1.0,100.0,47.0,,,");
+    for (other, n_against, says) in [
+        (rmc("4901.2000", "1.0"), 3, "position of RMC 2224 m away, 0.50 s apart"),
+        (rmc("4900.0500", "1.0"), 3, "position of RMC 93 m away, 0.50 s apart"),
+        (rmc("4900.0500", "200.0"), 0, ""),
+        (rmc("4900.0000", "1.0"), 0, ""),
+        (gll("4900.1000"), 3, "position of GLL 185 m away, 0.30 s apart"),
+        (gll("4900.0500"), 0, ""),
+        (gns("4910.0000"), 3, "position of GNS 18535 m away, 0.99 s apart"),
+        (rmc("4901.2000", "1.0").replace(",A,4901", ",V,4901"), 0, ""),
+    ] {
+        for ends in [Ends::WithNext, Ends::WithLast] {
+            let mut decoder = Decoder::new(Kind::Nmea, ends);
+            let mut out = Vec::new();
+            for second in 0..4 {
+                for body in [ZDA, GGA, GST, &other] {
+                    let body = body.replace("120000", &format!("12000{second}")).replace("12000S", &format!("12000{second}"));
+                    decoder.take(&Frame::Nmea(body.as_bytes()), 1, &mut out);
+                }
+            }
+            decoder.finish(&mut out);
+            let stated: Vec<_> = positions(&out).iter().filter_map(|p| p.absent.as_ref()).collect();
+            let against: Vec<_> = stated.iter().filter(|a| a.reason == Reason::Contradicted).map(|a| a.stated.as_str()).collect();
+            assert_eq!(against, vec![says; n_against], "{other} {ends:?}");
+        }
+    }
+    // A minute later nobody knows; at midnight a second is one.
+    let of_a_minute = rmc("4901.2000", "1.0").replace("12000S.50", "120100.00");
+    assert_eq!(reasons(&[ZDA, GGA, GST, &of_a_minute, &GGA.replace("120000", "120101")]), []);
+    let at_midnight = [
+        GGA.replace("120000.00", "235959.50"),
+        rmc("4901.2", "1.0").replace("12000S.50", "000000.00"),
+        GGA.replace("120000.00", "000000.50"),
+    ];
+    let stated = reasons(&[&ZDA.replace("120000", "235958"), &at_midnight[0], &at_midnight[1], &at_midnight[2]]);
+    assert!(stated.iter().any(|(reason, words)| *reason == "contradicted" && words.contains("0.50 s apart")), "{stated:?}");
+}
+
+#[test]
+fn an_accuracy_of_another_time_is_kept_beside_the_next_position() {
+    let log = read_sentences(&[ZDA, GGA, "GPGST,120000.50,1.0,,,,3000.0,4000.0,5.0", &GGA.replace("120000", "120001")]);
+    let stated: Vec<_> = log.positions.iter().map(|p| (p.covariance_m2, p.unread_accuracy_m)).collect();
+    assert_eq!(stated, [(None, None), (None, Some(5000.0))]);
+}
+
+#[test]
+fn a_text_an_alarm_and_the_dilution_of_gns_speak_against_a_position() {
+    for (other, says) in [
+        ("GNTXT,01,01,01,SPOOFING INDICATED", true),
+        ("GNTXT,01,01,02,ANTSTATUS=OK", false),
+        ("GNTXT,01,01,02,no spoofing indicated", false),
+        ("GPALR,120000.00,001,A,V,GPS POSITION LOST", true),
+        ("GPALR,120000.00,001,V,V,GPS POSITION LOST", false),
+        ("GPALF,1,1,0,120000.00,A,W,V,,002,1,0,LOST POSITION", true),
+        ("GNGNS,120000.00,4900.0000,N,00230.0000,E,AA,09,99.9,100.0,47.0,,,", true),
+        ("GNGNS,120000.00,4900.0000,N,00230.0000,E,AA,09,0.9,100.0,47.0,,,", false),
+    ] {
+        assert_eq!(reasons(&[ZDA, GGA, other, GST]).len(), usize::from(says), "{other}");
     }
 }
 
