@@ -67,7 +67,7 @@ impl Format {
         match self {
             Self::Json | Self::Readsb => Unfinished::Nothing,
             Self::Beast | Self::Avr => Unfinished::Sky(Sky::default()),
-            Self::Receiver(kind) => Unfinished::Epoch(position::Decoder::new(kind, Ends::WithLast)),
+            Self::Receiver(kind) => Unfinished::Epoch(Box::new(position::Decoder::new(kind, Ends::WithLast))),
         }
     }
 }
@@ -100,7 +100,7 @@ enum Unfinished {
     /// Lines are epochs of their own.
     Nothing,
     /// The epoch that a receiver's messages build.
-    Epoch(position::Decoder),
+    Epoch(Box<position::Decoder>),
     /// What aircraft said of themselves in other messages.
     Sky(Sky),
 }
@@ -179,7 +179,7 @@ impl Decoder {
         let unfinished = match format {
             Format::Json | Format::Readsb => Unfinished::Nothing,
             Format::Beast | Format::Avr => Unfinished::Sky(Sky::read(from)?),
-            Format::Receiver(kind) => Unfinished::Epoch(receiver::read(kind, from)?),
+            Format::Receiver(kind) => Unfinished::Epoch(Box::new(receiver::read(kind, from)?)),
         };
         Ok(Self { framer, format, claims, unfinished, track, statements, keys })
     }
