@@ -68,14 +68,16 @@ def test_a_log_is_read_with_its_offset_its_units_and_a_true_track(tmp_path: Path
     assert [each["time_ns"][0] for each in pieces][:1] == [epochs["time_ns"][0]]
 
 
-@pytest.mark.parametrize(("offset", "hours"), [("+00:00", 0), ("00:00", 0), ("-00:00", 0), ("+05:00", 5)])
+@pytest.mark.parametrize(
+    ("offset", "hours"), [("+00:00", 0), ("00:00", 0), ("-00:00", 0), ("+05:00", 5), ("+05", 5), ("-06", -6), ("0", 0)]
+)
 def test_an_offset_is_ahead_of_utc_whatever_sign_it_has(tmp_path: Path, offset: str, hours: int) -> None:
     rows = [row(k, offset=offset) for k in range(N)]
     assert f"{(10 + hours):02d}:00:00" in rows[0]
     assert read(log(tmp_path / "a.csv", rows)).epochs["time_ns"][0] == read(log(tmp_path / "b.csv", [row(0)] * 2)).epochs["time_ns"][0]
 
 
-@pytest.mark.parametrize("odd", ["", "east", "+5", "1:5"])
+@pytest.mark.parametrize("odd", ["", "east", "+5.5", "1:5"])
 def test_a_time_whose_offset_is_none_is_no_time(tmp_path: Path, odd: str) -> None:
     rows = [row(k, offset="+00:00") for k in range(N)]
     rows[20] = rows[20].replace("+00:00", odd)

@@ -129,6 +129,8 @@ NOT_AGAINST: list[dict[str, object]] = [
     {"gps": {"lat": 48.71, "lon": 1.72, "alt": 100.0}},
     {"fix": {"latitude": 48.71, "longitude": 1.72}},
     {"waypoints": [{"lat": 10.0, "lon": 10.0}]},
+    {"gps": {"lat": 48.71, "lon": 1.72, "speed": 70.0, "heading": 0.0, "time": "12:00:00"}},
+    {"camera": {"lat": 10.0, "lon": 10.0}},
     {"flight_plan": {"legs": [{"lat": 10.0, "lon": 10.0}]}},
     {"others": [{"id": "b", "lat": 10.0, "lon": 10.0}]},
     {"gps": [48.71, 1.72]},

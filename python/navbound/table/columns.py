@@ -267,8 +267,12 @@ HEARD: tuple[Column, ...] = (
         "az_rad el_rad", "direction from the receiver, azimuth clockwise from true north; null without an orbit or a position", "solution"
     ),
     *row("cn0_dbhz", "carrier to noise density, where the receiver states it", "source"),
-    *row("residual_m", "of a range that was used: measured less computed at the position, by the clock of its constellation", "solution"),
-    *row("sigma_m", "its standard deviation in the covariance", "solution"),
+    *row(
+        "residual_m",
+        "of a range that was used, or that a monitor excluded: measured less computed at the position, by the clock of its constellation",
+        "solution",
+    ),
+    *row("sigma_m", "its standard deviation in the covariance, for accuracy", "solution"),
 )
 SIGNALS: tuple[Column, ...] = (
     *row("signals", "what its ranges are made of, as `E1-E5a`", "source", kind="text"),

@@ -76,8 +76,13 @@ fn take(line: &[u8], o: &mut Observations, draft: &mut Draft) -> Result<(), Stri
         b"ANTENNA: DELTA H/E/N" => o.antenna_delta_m = three(line)?,
         b"INTERVAL" => o.interval_s = decimal(columns(line, 0, 10)).or_zero().filter(|s| *s > 0.0),
         b"# / TYPES OF OBSERV" => {
-            let names = columns(line, 6, 60).chunks(6).filter_map(|c| c.get(4..6)).filter(|n| !n.trim_ascii().is_empty());
-            draft.second.extend(names.map(|n| [n[0], n[1]]));
+            for name in columns(line, 6, 60).chunks(6).filter_map(|c| c.get(4..6)).filter(|n| !n.trim_ascii().is_empty()) {
+                let [kind, band] = *name else { return Err(not_a_code(name)) };
+                if ![kind, band].iter().all(u8::is_ascii_alphanumeric) {
+                    return Err(not_a_code(name));
+                }
+                draft.second.push([kind, band]);
+            }
         }
         b"SYS / # / OBS TYPES" => codes(line, o, draft)?,
         b"SYS / SCALE FACTOR" => factor(line, draft)?,

@@ -40,6 +40,12 @@ fn gps(number: u8) -> SatelliteId {
 }
 
 #[test]
+fn a_name_of_version_2_that_is_none_is_refused() {
+    let error = read_observations(V2.replace("P2    D1", "P2    D-").as_bytes()).unwrap_err().reason;
+    assert!(error.contains("'D-' is not the name of an observation"), "{error}");
+}
+
+#[test]
 fn a_version_3_file_becomes_a_table() {
     let o = read(V3);
     // 2019-04-28 is the first day of GPS week 2051; the file counts in GPS time, and so do we: no leap seconds.

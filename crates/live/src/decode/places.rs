@@ -37,8 +37,10 @@ pub type PlaceWords = ([Vec<String>; 11], [f64; 2]);
 const MOST_COUNTED: f64 = 1e5;
 /// Names beyond it are no pair's \[1\].
 const LONGEST_OF_A_PAIR: usize = 200;
-/// First parts of names of a height (ours).
+/// First parts of names of a height, of a motion and of a time (ours).
 const HEIGHTS: [&str; 5] = ["alt", "altitude", "height", "ele", "elevation"];
+const MOTIONS: [&str; 12] =
+    ["speed", "velocity", "heading", "course", "track", "bearing", "climb", "time", "timestamp", "date", "utc", "datetime"];
 /// Nearer to zero a letter of a hemisphere contradicts nothing (ours) \[rad\].
 const NO_SIDE_RAD: f64 = 1e-4;
 
@@ -81,10 +83,12 @@ impl Places {
         of_value(value).is_some()
     }
 
-    /// Whether a name is one of a coordinate or of a height: it states where the vehicle is, and nothing of how well that is known.
+    /// Whether a name is one of a coordinate, a height, a motion or a time: it states where the vehicle is, and nothing of how well that is known.
     pub(super) fn is_of_a_place(&self, name: &str) -> bool {
         let parts = parts(name);
-        has(&parts, &self.latitude) || has(&parts, &self.longitude) || parts.first().is_some_and(|first| HEIGHTS.contains(&&**first))
+        has(&parts, &self.latitude)
+            || has(&parts, &self.longitude)
+            || parts.first().is_some_and(|first| HEIGHTS.contains(&&**first) || MOTIONS.contains(&&**first))
     }
 
     /// Whether the parts of a name are those of both coordinates.

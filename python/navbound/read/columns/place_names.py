@@ -21,12 +21,12 @@ _LONGITUDES = words("lon lng longitude longitud laenge länge laengengrad") | {
     f"{whose}{lon}" for whose in _RECEIVERS for lon in ("lon", "lng", "longitude")
 }
 _NO_VEHICLE = NO_TRUTH | words(
-    "airport origin destination dest departure dep arrival arr home target goal next prev previous start end first last site sensor radar "
-    "waypoint waypoints wp wps poi pois landmark landmarks obstacle obstacles contact contacts to ms latency route routes plan flightplan "
-    "leg legs vor dme ndb others polygon geofence fence targets airports runways "
-    "beacon antenna cpr centre center cell grid tile offset scale speed vel velocity rate err error sigma std var acc accuracy axis "
-    "pred predicted forecast intruder traffic lead leader min max mean avg average median "
-    "dot variance accel acceleration g dev deviation cmd command trim stick force jerk ctrl control gain load"
+    "airport origin destination dest departure dep arrival arr home target goal next prev previous start end first last site sensor "
+    "radar waypoint waypoints wp wps poi pois landmark landmarks obstacle obstacles contact contacts weather camera to ms latency "
+    "route routes plan flightplan leg legs vor dme ndb others polygon geofence fence targets airports runways beacon antenna cpr "
+    "centre center cell grid tile offset scale speed vel velocity rate err error sigma std var acc accuracy axis pred predicted "
+    "forecast intruder traffic lead leader min max mean avg average median dot variance accel acceleration g dev deviation cmd "
+    "command trim stick force jerk ctrl control gain load"
 )
 """Parts of names of a latitude or a longitude, and of one that is none of the vehicle now. Provenance: ours."""
 _ACCELERATION = re.compile(r"(?i)lat_?ac$")

@@ -130,14 +130,16 @@ def as_written(dates: pl.Series, times: pl.Series) -> pl.Series:
     return pl.select(pl.concat_str(pl.lit(_texts(dates)), pl.lit(_texts(times)), separator=" ")).to_series()
 
 
-_OFFSET = r"^([+-]?)(\d{1,2}):(\d{2})$"
+_OFFSET = r"^([+-]?)(\d{1,2})(?::?(\d{2}))?$"
 
 
 def with_offset(times: pl.Series, offsets: pl.Series) -> pl.Series:
     """``12:30:01+02:00`` of a time of day and its offset; nothing where one of both is not written, and no time where an offset is none."""
     clock, offset = _texts(times), _texts(offsets)
     sign, hours, minutes = (_group(offset, _OFFSET, k) for k in (1, 2, 3))
-    zone = pl.concat_str(pl.when(sign == "-").then(pl.lit("-")).otherwise(pl.lit("+")), hours.str.zfill(2), pl.lit(":"), minutes)
+    zone = pl.concat_str(
+        pl.when(sign == "-").then(pl.lit("-")).otherwise(pl.lit("+")), hours.str.zfill(2), pl.lit(":"), minutes.fill_null("00")
+    )
     return pl.select(pl.concat_str(pl.lit(clock), pl.coalesce(zone, pl.lit(offset)))).to_series()
 
 

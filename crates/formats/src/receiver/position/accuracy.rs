@@ -35,9 +35,12 @@ pub(super) fn expected_errors(gbs: &Sentence<'_>) -> Option<[f64; 6]> {
 /// From Garmin's `PGRME`: errors of the plane and of the height, of which it states no share. Each counts as a standard deviation, that of the
 /// plane along each axis: careful for every share from 39 % on. Provenance: ours.
 pub(super) fn of_no_share(pgrme: &Sentence<'_>) -> Option<[f64; 6]> {
-    let size_m = |at: usize| pgrme.number(at).filter(|size| *size > 0.0 && pgrme.get(at + 1) == Some(b"M"));
-    let h_m = size_m(1)?;
-    Some(uncorrelated(h_m, h_m, size_m(3)?))
+    let in_metres = |at: usize| pgrme.get(at + 1).is_none_or(|unit| matches!(unit, b"M" | b""));
+    let size_m = |at: usize| pgrme.number(at).filter(|size| *size > 0.0 && in_metres(at));
+    // The third is the error in space.
+    let [h_m, in_space_m] = [size_m(1), size_m(5)];
+    let h_m = h_m.or(in_space_m)?;
+    Some(uncorrelated(h_m, h_m, size_m(3).or(in_space_m).unwrap_or(h_m)))
 }
 
 /// From `PUBX,00`: hAcc, the root of both horizontal variances together, and vAcc.

@@ -3,6 +3,7 @@
 use super::dating::Dated;
 use super::epoch::{Ends, Epoch, Message, State, TALKERS, WITNESSES, all_of_kind};
 use super::nmea::Heard;
+use super::sentence::Sentence;
 use super::witnesses::Near;
 use super::{Kind, Position, Reason, nmea, novatel, sbf, ubx, witnesses};
 use crate::stream::Frame;
@@ -57,6 +58,8 @@ pub(super) enum Step {
     Beside { kind: u32, number: fn(&[u8]) -> f64 },
     /// It states a datum that holds until the next one, and what that says against positions.
     Datum(Option<String>),
+    /// It states a place from this field on, and no time.
+    Untimed { name: &'static str, at: usize },
     /// It is an epoch of its own.
     Whole(Box<Position>),
     /// It is none.
@@ -95,6 +98,10 @@ impl Decoder {
         match step {
             Step::Passed => {}
             Step::Malformed(reason) => out.push(Item::Malformed(Malformed { record, reason })),
+            Step::Untimed { name, at } => {
+                let against = self.heard.near.and_then(|near| witnesses::untimed(name, &Sentence(body), at, &near));
+                self.heard.against = against.or_else(|| self.heard.against.take());
+            }
             Step::Whole(position) => {
                 self.finish(out);
                 out.push(Item::Position(Box::new(position.checked())));

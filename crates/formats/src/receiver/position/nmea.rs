@@ -26,7 +26,7 @@ pub(super) const GLL: u32 = name(*b"GLL");
 pub(super) const GNS: u32 = name(*b"GNS");
 const GSA: u32 = name(*b"GSA");
 /// Position of u-blox's own sentence, `PUBX,00`.
-const PUBX: u32 = name(*b"UBX");
+pub(super) const PUBX: u32 = name(*b"UBX");
 /// Garmin's own sentence of its errors, `PGRME`.
 const PGRME: u32 = name(*b"RME");
 pub(super) const RMC: u32 = name(*b"RMC");
@@ -94,10 +94,9 @@ pub(super) fn step(body: &[u8], record: u64, gga: bool) -> Step {
         return key.map_or(Step::Passed, |OfDay(key)| Step::Date { key, kind: PUBX, dated: None, kept: true });
     }
     if fields.get(0) == Some(b"PGRME") {
-        return match (fields.sizes(&[1, 3]), of_no_share(&fields)) {
-            (false, _) => Step::Malformed("an error of PGRME is no size"),
-            (true, None) => Step::Passed,
-            (true, Some(_)) => Step::Beside { kind: PGRME, number: |pgrme| Sentence(pgrme).number(1).unwrap_or(0.0) },
+        return match of_no_share(&fields) {
+            None => Step::Passed,
+            Some(_) => Step::Beside { kind: PGRME, number: |pgrme| of_no_share(&Sentence(pgrme)).map_or(0.0, |errors| errors[0]) },
         };
     }
     if [b"TXT,", b"ALR,", b"ALF,"].into_iter().any(|name| body.get(2..6) == Some(name)) {
@@ -132,7 +131,12 @@ pub(super) fn step(body: &[u8], record: u64, gga: bool) -> Step {
             Some(time) if places(kind, gga) => none(Reason::TimeNotKnown, format!("time {time}, {stated}")),
             Some(_) => Step::Malformed("the time of day of a sentence is none"),
             None if places(kind, gga) => none(Reason::NoFix, stated),
-            None => Step::Passed,
+            None => match kind {
+                RMC if Sentence(body).get(2) == Some(b"A") => Step::Untimed { name: "RMC", at: 3 },
+                GLL if Sentence(body).get(6).is_none_or(|status| status == b"A") => Step::Untimed { name: "GLL", at: 1 },
+                GNS => Step::Untimed { name: "GNS", at: 2 },
+                _ => Step::Passed,
+            },
         };
     };
     match kind {
@@ -154,8 +158,26 @@ pub(super) fn step(body: &[u8], record: u64, gga: bool) -> Step {
 }
 
 /// Words of texts and alarms of a receiver whose positions are none, and words that take them back. Provenance: ours.
-const ALARMS: [&str; 8] = ["SPOOF", "JAMM", "POSITION LOST", "LOST POSITION", "NO POSITION", "POS LOST", "GPS LOST", "GNSS LOST"];
-const TAKEN_BACK: [&str; 6] = ["NO SPOOF", "NO JAMM", "NOT ", "OFF", "NONE", "CLEARED"];
+const ALARMS: [&str; 16] = [
+    "SPOOF",
+    "JAMM",
+    "POSITION LOST",
+    "LOST POSITION",
+    "NO POSITION",
+    "POS LOST",
+    "GPS LOST",
+    "GNSS LOST",
+    "POSITION INVALID",
+    "INVALID POSITION",
+    "NO FIX",
+    "RAIM FAIL",
+    "RAIM UNSAFE",
+    "DEAD RECKON",
+    "INTERFERENCE",
+    "SIGNAL LOST",
+];
+const TAKEN_BACK: [&str; 12] =
+    ["NO SPOOF", "NO JAMM", "NO INTERF", "NOT ", "OFF", "NONE", "CLEARED", "ENABLED", "DETECTION ON", "ANTI", "STATE=", "MONITOR"];
 
 /// The words of a text, or of an alarm.
 fn alarm(text: &Sentence<'_>) -> String {
@@ -164,7 +186,12 @@ fn alarm(text: &Sentence<'_>) -> String {
 
 /// Whether a text, or an alarm that is raised, speaks against positions.
 fn speaks_against(text: &Sentence<'_>) -> bool {
-    let is_raised = text.0.get(2..5) != Some(b"ALR") || text.get(3) == Some(b"A");
+    let is_raised = match text.0.get(2..5) {
+        Some(b"ALR") => text.get(3) == Some(b"A"),
+        // Rectified, or normal.
+        Some(b"ALF") => !matches!(text.get(7), Some(b"U" | b"N")),
+        _ => true,
+    };
     let words = alarm(text).to_uppercase();
     let any = |list: &[&str]| list.iter().any(|word| words.contains(word));
     is_raised && any(&ALARMS) && !any(&TAKEN_BACK)
@@ -339,12 +366,18 @@ fn contradiction(own: &Own<'_>, messages: &[Message], other_datum: Option<&str>)
     let flat = || sentence(GSA).map(|gsa| dimensions(gsa.0)).filter(|dimensions| *dimensions < GSA_DIMENSIONS);
     let of_gns = || all_of_kind(messages, GNS).find_map(|gns| Sentence(&gns.body).number(8).filter(|dilution| *dilution > DILUTION));
     let wide = || sentence(GSA).and_then(|gsa| gsa.number(16)).filter(|dilution| *dilution > DILUTION);
-    let own_word = || sentence(PUBX).and_then(|pubx| pubx.get(8)).filter(|fix| NO_FIX.contains(fix)).map(String::from_utf8_lossy);
+    let own_word =
+        || of_kind(messages, PUBX).and_then(|pubx| no_fix(&Sentence(&pubx.body)).map(|fix| String::from_utf8_lossy(fix).into_owned()));
     let further = stated.or_else(|| other_datum.map(str::to_owned));
     let further = further.or_else(|| sentence(TXT).map(|text| alarm(&text)));
     let further = further.or_else(|| flat().map(|fix| format!("GSA fix {fix}")));
     let further = further.or_else(|| of_gns().map(|hdop| format!("GNS HDOP {hdop}")));
     further.or_else(|| wide().map(|hdop| format!("GSA HDOP {hdop}"))).or_else(|| own_word().map(|fix| format!("PUBX fix {fix}")))
+}
+
+/// The fix of a `PUBX,00` that is none.
+pub(super) fn no_fix<'a>(pubx: &Sentence<'a>) -> Option<&'a [u8]> {
+    pubx.get(8).filter(|fix| NO_FIX.contains(fix))
 }
 
 /// Fixes of `PUBX,00` that are none, of dead reckoning, of the time alone, or in two dimensions.
