@@ -130,8 +130,7 @@ impl Log {
     fn date(&mut self, Sentences { waiting, dates, .. }: Sentences) {
         let mut place = 0;
         let Some(first) = waiting.first() else { return };
-        let used = |position: &Position| position.absent.as_ref().is_none_or(|absent| absent.reason == Reason::FewSatellites);
-        if dates.is_empty() && !waiting.iter().any(used) {
+        if dates.is_empty() && !waiting.iter().any(Position::stands) {
             waiting.into_iter().for_each(|position| self.position(position));
             return;
         }

@@ -272,6 +272,11 @@ impl Position {
         self.time.is_none() && self.of_day.is_some()
     }
 
+    /// Whether nothing takes the position away: a count of few satellites does not.
+    fn stands(&self) -> bool {
+        self.absent.as_ref().is_none_or(|absent| absent.reason == Reason::FewSatellites)
+    }
+
     /// The position, or none where it lies nowhere or at no time, as whole messages with wrong contents give it.
     fn checked(mut self) -> Self {
         let on_earth = self.lat_rad.is_some_and(|lat| lat.abs() <= FRAC_PI_2) && self.lon_rad.is_some_and(|lon| lon.abs() <= TAU);
@@ -280,7 +285,7 @@ impl Position {
         let height = self.h_m.is_none_or(|h| h > LOWEST_M && h < HIGHEST_M);
         // A week beyond every time gives none.
         let dated = self.time.map_or(self.of_day.is_some(), |time| (0..LATEST_NS).contains(&time.nanoseconds()));
-        if self.absent.is_none() && !(on_earth && height && dated) {
+        if self.stands() && !(on_earth && height && dated) {
             let time_ns = self.time.map(GpsTime::nanoseconds);
             let stated = format!("lat_rad {:?}, lon_rad {:?}, h_m {:?}, time_ns {time_ns:?}", self.lat_rad, self.lon_rad, self.h_m);
             self.absent = Some(Absent { reason: Reason::OutsideDomain, stated });
@@ -290,7 +295,7 @@ impl Position {
         }
         // Receivers write 99.99 where they know none.
         let dilution = [self.pdop, self.hdop, self.vdop].into_iter().flatten().fold(0.0, f64::max);
-        if self.absent.is_none() && dilution > DILUTION {
+        if self.stands() && dilution > DILUTION {
             self.absent = Some(Absent { reason: Reason::Dilution, stated: format!("dilution {dilution}") });
         }
         self

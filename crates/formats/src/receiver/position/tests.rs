@@ -484,6 +484,15 @@ fn what_another_sentence_says_against_a_position_takes_it_away() {
     assert_eq!((few.positions.len(), few.left_out.len(), few.absent.len()), (1, 0, 0));
     let stated = few.positions[0].absent.as_ref().map(|absent| (absent.reason, absent.stated.as_str()));
     assert_eq!((few.positions[0].n_sv, stated), (Some(0), Some((Reason::FewSatellites, "0 satellites"))));
+    // What lies nowhere is no position, however few satellites it states, and so is what states that it has no geometry.
+    let few = GGA.replace(",08,", ",00,");
+    let field = |number: usize, value: &str| {
+        let mut fields: Vec<&str> = few.split(',').collect();
+        fields[number] = value;
+        reasons(&[ZDA, &fields.join(","), GST]).into_iter().map(|(reason, _)| reason).collect::<Vec<_>>()
+    };
+    assert_eq!(field(2, "47150"), [Reason::OutsideDomain.id()]);
+    assert_eq!(field(8, "99.99"), [Reason::Dilution.id()]);
     // What another sentence says counts before it.
     let both = reasons(&[ZDA, &GGA.replace(",08,", ",00,"), GST, &rmc("V", "N", "4900.0000")]);
     assert_eq!(both, [("contradicted", "RMC status V".to_owned())]);
