@@ -3,7 +3,7 @@
 use crate::araim::Desk;
 use crate::outlook::{Outcome, Promise};
 use crate::positions::{Job, Watch, each_epoch};
-use crate::receivers::heard::Judged;
+use crate::receivers::heard::{Judged, Residuals};
 use crate::receivers::ranges::{Tally, Unused};
 use navbound_core::bound::araim::exclusion::{Decision, Monitored};
 use navbound_core::bound::araim::modes::MOST_SATELLITES;
@@ -23,25 +23,19 @@ use navbound_formats::rinex::{Navigation, Observations};
 pub struct Watched {
     /// The position with the satellites that are left, weighted for integrity.
     pub position: Geodetic,
-    /// Satellites before exclusion.
-    pub n_sv: usize,
     /// Who was excluded.
     pub excluded: Vec<SatelliteId>,
     /// Decision and levels.
     pub monitored: Monitored,
-    /// Residuals of all satellites against the error model, where there are enough.
-    pub consistency: Option<Consistency>,
-    /// Its satellites, to compare their codes with their phases, and the residual of each \[m\].
-    compared: Vec<Compared>,
-    residuals_m: Vec<f64>,
+    /// Residuals of all satellites.
+    pub residuals: Residuals,
 }
 
 impl Watched {
     fn judged(&self) -> Judged<'_> {
         Judged {
             position: &self.position,
-            compared: &self.compared,
-            residuals_m: &self.residuals_m,
+            residuals: &self.residuals,
             step_m: self.monitored.step.map(Metres::m),
             excluded: &self.excluded,
         }
@@ -84,13 +78,7 @@ pub(crate) struct Taken {
     /// Least squares of all ranges, nothing excluded.
     pub(crate) fix: Fix,
     /// Measured less computed ranges there, one a line of sight.
-    pub(crate) residuals_m: Vec<f64>,
-    /// Whose they are.
-    pub(crate) satellites: Vec<SatelliteId>,
-    /// The residuals against the error model for accuracy, where there are enough.
-    pub(crate) consistency: Option<Consistency>,
-    /// The satellites, to compare their codes with their phases.
-    pub(crate) compared: Vec<Compared>,
+    pub(crate) residuals: Residuals,
 }
 
 /// What a monitor believes of ranges.
@@ -113,18 +101,17 @@ pub(crate) fn taken(
     let settings = &rules.job.settings;
     let fix = point::solve(ranges, time, settings)?;
     sights.clear();
-    let (mut residuals_m, mut satellites) = (Vec::new(), Vec::new());
+    let (mut residuals_m, mut compared) = (Vec::new(), Vec::new());
     for seen in sighted(ranges, time, settings, &fix.position).take(MOST_RANGES) {
         let satellite = ranges[seen.index].satellite;
         residuals_m.push(seen.residual.m());
-        satellites.push(satellite);
-        sights.push(rules.promise.sight_beyond(seen.unit, satellite.constellation, &beyond[seen.index]));
+        let sight = rules.promise.sight_beyond(seen.unit, satellite.constellation, &beyond[seen.index]);
+        compared.push(Compared { satellite, unit: sight.unit, weight: 1.0 / sight.accuracy_m2 });
+        sights.push(sight);
     }
     tally.leave(Unused::BelowMask, ranges.len() - sights.len());
     let consistency = Consistency::of(sights.iter().map(Sight::weighted_for_accuracy).zip(residuals_m.iter().copied())).ok();
-    let compared =
-        sights.iter().zip(&satellites).map(|(s, satellite)| Compared { satellite: *satellite, unit: s.unit, weight: 1.0 / s.accuracy_m2 });
-    Ok(Taken { fix, residuals_m, compared: compared.collect(), satellites, consistency })
+    Ok(Taken { fix, residuals: Residuals { compared, residuals_m, consistency } })
 }
 
 fn epoch(
@@ -135,11 +122,11 @@ fn epoch(
     rules: &Rules<'_>,
     service: &Service,
 ) -> Result<Watched, NoLevels> {
-    let Taken { fix, residuals_m, satellites, consistency, compared } = taken(ranges, time, rules, &mut desk.sights, tally)?;
-    let monitored = desk.monitored(&residuals_m, service)?;
+    let Taken { fix, residuals } = taken(ranges, time, rules, &mut desk.sights, tally)?;
+    let monitored = desk.monitored(&residuals.residuals_m, service)?;
     let [east, north, up] = monitored.step;
     let position = fix.position.moved(&Displacement::new(east, north, up)).map_err(Unavailable::from)?;
     let out = |i: usize| i < MOST_SATELLITES && monitored.excluded >> i & 1 == 1;
-    let excluded = satellites.iter().enumerate().filter(|(i, _)| out(*i)).map(|(_, s)| *s).collect();
-    Ok(Watched { position, n_sv: satellites.len(), excluded, monitored, consistency, compared, residuals_m })
+    let excluded = residuals.compared.iter().enumerate().filter(|(i, _)| out(*i)).map(|(_, c)| c.satellite).collect();
+    Ok(Watched { position, excluded, monitored, residuals })
 }

@@ -360,8 +360,12 @@ pub fn each_epoch<D, T: Send>(
         watch.tally.add(&tally);
     }
     let mut phases = Compare::new(&source);
-    watch.led_off =
-        watch.epochs.iter().enumerate().map(|(epoch, one)| phases.next(epoch, judged(one).map(|j| j.compared)).is_some()).collect();
+    watch.led_off = watch
+        .epochs
+        .iter()
+        .enumerate()
+        .map(|(epoch, one)| phases.next(epoch, judged(one).map(|j| j.residuals.compared.as_slice())).is_some())
+        .collect();
     watch.comparisons = phases.comparisons();
     watch
 }

@@ -1,10 +1,10 @@
 //! RAIM of many epochs by the slope method: geometry given, users and orbits, or a receiver's file.
 
 use crate::araim::squared;
-use crate::araim_watch::{Rules, taken};
+use crate::araim_watch::{Rules, Taken, taken};
 use crate::outlook::{self, Outcome, Outlook, Promise, refusal, rows};
 use crate::positions::{Job, Watch, each_epoch};
-use crate::receivers::heard::Judged;
+use crate::receivers::heard::{Judged, Residuals};
 use crate::receivers::ranges::Tally;
 use nalgebra::Vector3;
 use navbound_core::bound::araim::exclusion::Decision;
@@ -15,8 +15,6 @@ use navbound_core::bound::{Algorithm, Levels, Sight};
 use navbound_core::frame::{Displacement, Geodetic};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Reason, Unavailable};
 use navbound_core::signal::{Constellation, SatelliteId};
-use navbound_core::solution::consistency::Consistency;
-use navbound_core::solution::led_off::Compared;
 use navbound_core::solution::point::Range;
 use navbound_formats::rinex::{Navigation, Observations};
 use navbound_path::AtIndex;
@@ -152,19 +150,15 @@ pub struct Watched {
     pub excluded: Option<SatelliteId>,
     /// Decision and levels.
     pub tested: Tested,
-    /// Residuals of all satellites against the error model, where there are enough.
-    pub consistency: Option<Consistency>,
-    /// Its satellites, to compare their codes with their phases, and the residual of each \[m\].
-    compared: Vec<Compared>,
-    residuals_m: Vec<f64>,
+    /// Residuals of all satellites.
+    pub residuals: Residuals,
 }
 
 impl Watched {
     fn judged(&self) -> Judged<'_> {
         Judged {
             position: &self.position,
-            compared: &self.compared,
-            residuals_m: &self.residuals_m,
+            residuals: &self.residuals,
             step_m: self.tested.monitored.map_or([0.0; 3], |m| m.step.map(Metres::m)),
             excluded: self.excluded.as_slice(),
         }
@@ -207,14 +201,14 @@ fn epoch(
     tally: &mut Tally,
     rules: &Rules<'_>,
 ) -> Result<Watched, Unavailable> {
-    let taken = taken(ranges, time, rules, &mut desk.sights, tally)?;
+    let Taken { fix, residuals } = taken(ranges, time, rules, &mut desk.sights, tally)?;
     desk.columns = (0..desk.sights.len()).collect();
-    desk.residuals.clone_from(&taken.residuals_m);
+    desk.residuals.clone_from(&residuals.residuals_m);
     let tested = desk.tested().map_err(Unavailable::from)?;
     let position = match tested.monitored {
-        Some(Monitored { step: [east, north, up], .. }) => taken.fix.position.moved(&Displacement::new(east, north, up))?,
-        None => taken.fix.position,
+        Some(Monitored { step: [east, north, up], .. }) => fix.position.moved(&Displacement::new(east, north, up))?,
+        None => fix.position,
     };
-    let excluded = tested.excluded.and_then(|i| taken.satellites.get(i).copied());
-    Ok(Watched { position, excluded, tested, consistency: taken.consistency, compared: taken.compared, residuals_m: taken.residuals_m })
+    let excluded = tested.excluded.and_then(|i| residuals.compared.get(i).map(|c| c.satellite));
+    Ok(Watched { position, excluded, tested, residuals })
 }

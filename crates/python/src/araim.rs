@@ -324,7 +324,7 @@ fn araim_watch<'py>(
     d.set_item("est_lon_rad", number(|w| w.position.point.lon().rad()))?;
     d.set_item("est_h_m", number(|w| w.position.height.m()))?;
     let count = |f: fn(&Watched) -> usize| watched.iter().map(|w| w.as_ref().map_or(0, f) as i64).collect::<Vec<_>>().into_pyarray(py);
-    d.set_item("n_sv", count(|w| w.n_sv))?;
+    d.set_item("n_sv", count(|w| w.residuals.compared.len()))?;
     d.set_item("n_excluded", count(|w| w.excluded.len()))?;
     let names =
         |w: &Result<Watched, NoLevels>| w.as_ref().map_or_else(|_| Vec::new(), |w| w.excluded.iter().map(ToString::to_string).collect());
@@ -333,7 +333,7 @@ fn araim_watch<'py>(
     d.set_item("status", reasons.iter().map(|r| status::of(*r)).collect::<Vec<_>>())?;
     d.set_item("reason_id", reasons.iter().map(|r| status::id(*r)).collect::<Vec<_>>())?;
     d.set_item("refusal", watched.iter().map(|w| w.as_ref().err().map(ToString::to_string).unwrap_or_default()).collect::<Vec<_>>())?;
-    beside(&d, &watch, |w| w.as_ref().ok()?.consistency)?;
+    beside(&d, &watch, |w| w.as_ref().ok()?.residuals.consistency)?;
     Ok(d)
 }
 

@@ -134,7 +134,7 @@ fn raim_watch<'py>(
     d.set_item("status", reasons.iter().map(|r| status::of(*r)).collect::<Vec<_>>())?;
     d.set_item("reason_id", reasons.iter().map(|r| status::id(*r)).collect::<Vec<_>>())?;
     d.set_item("refusal", watched.iter().map(|w| w.as_ref().err().map(ToString::to_string).unwrap_or_default()).collect::<Vec<_>>())?;
-    beside(&d, &watch, |w| w.as_ref().ok()?.consistency)?;
+    beside(&d, &watch, |w| w.as_ref().ok()?.residuals.consistency)?;
     Ok(d)
 }
 

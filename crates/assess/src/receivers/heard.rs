@@ -6,6 +6,7 @@ use navbound_core::frame::Geodetic;
 use navbound_core::geometry::{Direction, Observer};
 use navbound_core::quantity::Radians;
 use navbound_core::signal::SatelliteId;
+use navbound_core::solution::consistency::Consistency;
 use navbound_core::solution::led_off::Compared;
 use navbound_core::solution::point::{Fix, Range};
 
@@ -78,15 +79,31 @@ pub struct Tested {
     pub sigma_m: f64,
 }
 
+/// Residuals of all satellites above the mask at an epoch, before any is excluded.
+#[derive(Debug, Clone)]
+pub struct Residuals {
+    /// The satellites, to compare their codes with their phases, too.
+    pub compared: Vec<Compared>,
+    /// The residual of each \[m\].
+    pub residuals_m: Vec<f64>,
+    /// All against the error model for accuracy, where there are enough.
+    pub consistency: Option<Consistency>,
+}
+
+impl Residuals {
+    /// A satellite with its residual \[m\].
+    fn of(&self, satellite: SatelliteId) -> Option<(&Compared, f64)> {
+        self.compared.iter().zip(self.residuals_m.iter().copied()).find(|(c, _)| c.satellite == satellite)
+    }
+}
+
 /// What a monitor made of an epoch's satellites.
 #[derive(Debug, Clone, Copy)]
 pub struct Judged<'a> {
     /// The position.
     pub position: &'a Geodetic,
-    /// Satellites above the mask.
-    pub compared: &'a [Compared],
-    /// The residual of each where all satellites put the receiver.
-    pub residuals_m: &'a [f64],
+    /// Residuals where all satellites put the receiver.
+    pub residuals: &'a Residuals,
     /// From there to the position: east, north, up \[m\].
     pub step_m: [f64; 3],
     /// Those that were excluded.
@@ -110,7 +127,7 @@ impl Listed {
             let direction = here.and_then(|h| h.direction(&r.position).ok());
             let (fate, [residual_m, sigma_m]) = match judged {
                 None => (Fate::NoPosition, [f64::NAN; 2]),
-                Some(j) => match j.compared.iter().zip(j.residuals_m).find(|(c, _)| c.satellite == r.satellite) {
+                Some(j) => match j.residuals.of(r.satellite) {
                     None => (Fate::Unused(Unused::BelowMask), [f64::NAN; 2]),
                     Some((c, residual_m)) => {
                         let fate = if j.excluded.contains(&r.satellite) { Fate::Excluded } else { Fate::Used };

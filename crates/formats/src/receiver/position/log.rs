@@ -106,7 +106,7 @@ impl Sentences {
     fn datum(&mut self, against: Option<String>) {
         if let Some(stated) = against.filter(|_| !self.datum) {
             for position in &mut self.waiting {
-                let kept = position.absent.take_if(|absent| absent.reason != Reason::FewSatellites);
+                let kept = position.absent.take_if(|absent| absent.takes_away());
                 position.absent = kept.or_else(|| Some(Absent { reason: Reason::Contradicted, stated: stated.clone() }));
             }
         }
@@ -171,7 +171,7 @@ impl Log {
 
     fn position(&mut self, mut position: Position) {
         self.n_rows += 1;
-        if let Some(absent) = position.absent.take_if(|absent| absent.reason != Reason::FewSatellites) {
+        if let Some(absent) = position.absent.take_if(|absent| absent.takes_away()) {
             self.absent.push(position.time);
             self.leave_out(absent.reason.id(), absent.reason.damaged(), position.record, absent.stated);
             return;

@@ -152,6 +152,13 @@ pub struct Absent {
     pub stated: String,
 }
 
+impl Absent {
+    /// Whether it takes the position away; few satellites do not, for some receivers always count none.
+    fn takes_away(&self) -> bool {
+        self.reason != Reason::FewSatellites
+    }
+}
+
 /// A doubt that a person should settle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Note {
@@ -272,9 +279,9 @@ impl Position {
         self.time.is_none() && self.of_day.is_some()
     }
 
-    /// Whether nothing takes the position away: a count of few satellites does not.
+    /// Whether nothing takes the position away.
     fn stands(&self) -> bool {
-        self.absent.as_ref().is_none_or(|absent| absent.reason == Reason::FewSatellites)
+        !self.absent.as_ref().is_some_and(Absent::takes_away)
     }
 
     /// The position, or none where it lies nowhere or at no time, as whole messages with wrong contents give it.
